@@ -17,7 +17,7 @@ use numpy::{Element, IntoPyArray as _};
 use peelnet::{
     Gpu,
     dataset::{self, Column, ColumnKind, FragmentBatch},
-    extract::{self, ExtractOptions, ExtractReport, PeelError, Progress, Views, items},
+    extract::{self, ExtractOptions, ExtractReport, PeelError, Progress, items},
 };
 use peelnet_files::{counted, thousands};
 use pyo3::{
@@ -284,7 +284,7 @@ fn in_memory(
     reporter: &Reporter<Progress>,
 ) -> PyResult<Rows> {
     let start = Instant::now();
-    let all = items::items(scenes, options.views, options.augment).map_err(raised)?;
+    let all = items::items(scenes, options).map_err(raised)?;
     let all = all.iter().map(|item| item.index);
     let mine: Vec<u32> = all
         .filter(|&i| options.shard.is_none_or(|s| s.contains(i)))
@@ -361,11 +361,9 @@ pub fn extract_rows<'py>(
     progress: Option<Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let shard = shard.map(str::parse::<dataset::Shard>).transpose();
-    let views = match views {
-        Some(0) => return Err(wrong("'0' is not a number of views; write 1, 2, … or None")),
-        Some(n) => Views::First(n),
-        None => Views::All,
-    };
+    if views == Some(0) {
+        return Err(wrong("'0' is not a number of views; write 1, 2, … or None"));
+    }
     if max_passes == Some(0) {
         return Err(wrong("max_passes must be at least 1"));
     }

@@ -4,7 +4,7 @@
 
 use peelnet_dataset::{Dataset, Format};
 use peelnet_model::Model;
-use peelnet_peel::synthetic::{SyntheticOptions, synthetic};
+use peelnet_peel::{ExtractOptions, synthetic::synthetic};
 use peelnet_scene::Scene;
 use std::{
     fs,
@@ -183,15 +183,12 @@ fn template(kind: usize) -> &'static Template {
     TEMPLATES[kind].get_or_init(|| {
         let format = FORMATS[kind];
         let out = folder().join(format!("template-{format}"));
-        let options = SyntheticOptions {
-            out: out.clone(),
-            lists: 12,
+        let options = ExtractOptions {
             format,
             seed: 3,
-            resume: false,
-            command: "test".into(),
+            ..ExtractOptions::new(&out)
         };
-        synthetic(&options, &AtomicBool::new(false), &mut |_| {}).expect("a small dataset");
+        synthetic(12, &options, &AtomicBool::new(false), &mut |_| {}).expect("a small dataset");
         let names = fs::read_dir(&out).expect("lists").flatten();
         let mut names: Vec<String> = names
             .map(|e| e.file_name().to_string_lossy().into_owned())

@@ -32,12 +32,12 @@ fn full_memory_makes_smaller_tiles() {
 
     let mut harvester = Harvester::new(&gpu, &scene, size, Peel::SBuffer, false, None).unwrap();
     let mut fragments = 0;
-    let mut take = |tile: RawTile| {
+    let take = |tile: &mut RawTile| {
         fragments += tile.depths.len();
         Ok(())
     };
     let (view, all) = (&scene.views[0], PixelSample::ALL);
-    let found = harvester.harvest(view, all, None, RawTile::default, &mut take);
+    let found = harvester.harvest(view, all, None, take);
     let found = found.unwrap();
     assert_eq!((fragments, found.tiles), (64 * 48 * 20, 16));
 }

@@ -35,7 +35,7 @@ fn harvest(
 ) -> (Vec<Pixel>, u32) {
     let mut harvester = Harvester::new(gpu, scene, SIZE, peel, sample.is_some(), budget).unwrap();
     let mut pixels = vec![Pixel::new(); (SIZE[0] * SIZE[1]) as usize];
-    let mut take = |tile: RawTile| {
+    let take = |tile: &mut RawTile| {
         for (run, i) in tile.offsets.windows(2).zip(tile.first_pixel as usize..) {
             let run = run[0] as usize..run[1] as usize;
             let fragments = run.map(|k| (tile.depths[k], tile.colors[k]));
@@ -44,7 +44,7 @@ fn harvest(
         Ok(())
     };
     let sample = sample.unwrap_or(PixelSample::ALL);
-    let found = harvester.harvest(&scene.views[0], sample, None, RawTile::default, &mut take);
+    let found = harvester.harvest(&scene.views[0], sample, None, take);
     let found = found.unwrap();
     let most = pixels.iter().map(Vec::len).max();
     assert_eq!(Some(found.max_layers as usize), most);
@@ -119,7 +119,7 @@ fn rows_of_deep_pixels_are_those_of_a_sort_on_the_cpu() {
         let mut harvester = harvester.unwrap();
         harvester.keep_triangles(true);
         let mut pixels = 0;
-        let mut check = |tile: RawTile| {
+        let check = |tile: &mut RawTile| {
             for (run, pixel) in tile.offsets.windows(2).zip(tile.first_pixel..) {
                 let run = run[0] as usize..run[1] as usize;
                 let Some(list) = lists.get(pixel as usize) else {
@@ -148,7 +148,7 @@ fn rows_of_deep_pixels_are_those_of_a_sort_on_the_cpu() {
             Ok(())
         };
         let (view, all) = (&scene.views[0], PixelSample::ALL);
-        let harvested = harvester.harvest(view, all, None, RawTile::default, &mut check);
+        let harvested = harvester.harvest(view, all, None, check);
         harvested.unwrap();
         assert_eq!(pixels, lists.len());
     }
@@ -212,9 +212,9 @@ fn broken_sorts_and_lost_fragments_are_errors() {
             if method == "abuffer" {
                 let harvester = Harvester::new(&gpu, &scene, size, Peel::SBuffer, false, None);
                 let (view, all) = (&scene.views[0], PixelSample::ALL);
-                let ignored = |_| Ok(());
+                let ignored = |_: &mut RawTile| Ok(());
                 let mut harvester = harvester.unwrap();
-                let harvested = harvester.harvest(view, all, None, RawTile::default, ignored);
+                let harvested = harvester.harvest(view, all, None, ignored);
                 let message = harvested.unwrap_err().to_string();
                 let says = message.contains(expected) && message.contains("pixel (");
                 assert!(says, "{message}");

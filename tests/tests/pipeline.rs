@@ -1,15 +1,12 @@
 //! Extraction to datasets: what they hold, in every format and by every way to peel, and what is refused.
 
 use peelnet_core::fragment::worked_example;
-use peelnet_dataset::{Column, Dataset, Format, Shard, Summary};
+use peelnet_dataset::{Column, Dataset, Format, FragmentBatch, Summary};
 use peelnet_gpu::Gpu;
-use peelnet_peel::{ExtractOptions, Peel, Views, extract};
+use peelnet_peel::{ExtractOptions, Peel, extract};
 use peelnet_scene::Scene;
 use peelnet_tests::{gpu, scene, soup, walls};
-use std::{
-    path::{Path, PathBuf},
-    sync::atomic::AtomicBool,
-};
+use std::{path::Path, sync::atomic::AtomicBool};
 
 fn options(out: &Path) -> ExtractOptions {
     ExtractOptions {
@@ -35,19 +32,6 @@ fn scenes() -> Vec<Scene> {
         scene
     };
     [("first", 1), ("second", 2)].map(one).to_vec()
-}
-
-fn files(folder: &Path) -> Vec<(String, Vec<u8>)> {
-    let paths = std::fs::read_dir(folder).unwrap();
-    let paths = paths.map(|e| e.unwrap().path());
-    let of_rows = |p: &PathBuf| p.is_file() && p.extension().is_some_and(|e| e != "json");
-    let named = |p: PathBuf| {
-        let name = p.file_name().unwrap().to_string_lossy().into_owned();
-        (name, std::fs::read(p).unwrap())
-    };
-    let mut all: Vec<_> = paths.filter(of_rows).map(named).collect();
-    all.sort();
-    all
 }
 
 /// The worked example in every pixel: its rows are known.
@@ -110,30 +94,6 @@ fn sums_hold_and_formats_and_peels_agree() {
     }
 }
 
-/// The same seed gives the same bytes, and shards put together are the whole.
-#[test]
-fn extraction_repeats_and_shards_add_up() {
-    let gpu = gpu();
-    let folder = tempfile::tempdir().unwrap();
-    let sampled = |out: &Path, shard| ExtractOptions {
-        pixels: 0.5,
-        shard,
-        ..options(out)
-    };
-    let at = |name: &str| folder.path().join(name);
-    let whole = run(&gpu, &scenes(), &sampled(&at("a"), None)).manifest;
-    let again = run(&gpu, &scenes(), &sampled(&at("b"), None)).manifest;
-    assert_eq!(files(&at("a")), files(&at("b")));
-    assert_eq!(whole.hash, again.hash);
-    for i in [2, 1, 3] {
-        let shard = Shard { index: i, of: 3 };
-        run(&gpu, &scenes(), &sampled(&at("c"), Some(shard)));
-    }
-    let merged = Dataset::open(at("c")).unwrap();
-    assert_eq!(merged.hash(), whole.hash);
-    assert_eq!(merged.rows(), whole.rows);
-}
-
 /// A dataset records the effects that its scenes needed.
 #[test]
 fn a_dataset_records_its_census() {
@@ -150,33 +110,18 @@ fn a_dataset_records_its_census() {
     assert_eq!(effects, [vec![], vec!["culling", "emission"]]);
 }
 
+/// A dataset's transmittance is one number.
 #[test]
-fn requests_that_make_no_sense_are_refused() {
+fn coloured_transmission_is_refused() {
     let gpu = gpu();
     let folder = tempfile::tempdir().unwrap();
-    let out = folder.path().join("d");
-    let refused = |scenes: &[Scene], options: &ExtractOptions| {
-        let refused = extract(&gpu, scenes, options, &NEVER, &mut |_| {});
-        refused.unwrap_err().to_string()
-    };
-    let all = scenes();
-    let many = ExtractOptions {
-        views: Views::First(3),
-        ..options(&out)
-    };
-    assert!(refused(&all, &many).contains("2 of the 3 views"));
-    let twice = [all[0].clone(), all[0].clone()];
-    assert!(refused(&twice, &options(&out)).contains("rename one"));
-    let none = ExtractOptions {
-        pixels: 0.0,
-        ..options(&out)
-    };
-    assert!(refused(&all, &none).contains("above 0"));
-    // A dataset's transmittance is one number.
-    let mut stained = all[0].clone();
-    stained.objects[0].materials[0].transmission = [0.9, 0.1, 0.2];
-    assert!(refused(&[stained], &options(&out)).contains("transmission_color"));
-    assert!(!out.exists());
+    let mut stained = scenes();
+    stained[0].objects[0].materials[0].transmission = [0.9, 0.1, 0.2];
+    let options = options(&folder.path().join("d"));
+    let refused = extract(&gpu, &stained, &options, &NEVER, &mut |_| {});
+    let message = refused.unwrap_err().to_string();
+    assert!(message.contains("transmission_color"), "{message}");
+    assert!(!options.out.exists());
 }
 
 /// Batches in memory hold the rows of the dataset, in its order; one that is dropped early ends its thread.
@@ -191,12 +136,12 @@ fn batches_hold_the_rows_of_the_dataset() {
     };
     run(&gpu, &scenes, &options);
     let dataset = Dataset::open(&options.out).unwrap();
-    let mut written = peelnet_dataset::FragmentBatch::default();
+    let mut written = FragmentBatch::default();
     for batch in dataset.batches(1 << 16) {
         let batch = batch.unwrap();
         written.extend_from(&batch, 0..batch.len());
     }
-    let mut found = peelnet_dataset::FragmentBatch::default();
+    let mut found = FragmentBatch::default();
     for batch in peelnet_peel::batches(&gpu, &scenes, &options).unwrap() {
         let batch = batch.unwrap();
         found.extend_from(&batch, 0..batch.len());

@@ -1,23 +1,19 @@
 //! Synthetic fragment lists, and the examples that recipes make of whole pixels.
 
-use peelnet_dataset::{Dataset, Format, SplitBy, Summary};
+use peelnet_dataset::{Dataset, SplitBy, Summary};
 use peelnet_model::{Model, Recipe};
-use peelnet_peel::synthetic::{SyntheticOptions, synthetic};
+use peelnet_peel::{ExtractOptions, synthetic::synthetic};
 use peelnet_train::{ALPHA, Config, LEFT, PixelLoss, REST, RunOptions, SUM, TrainingData, train};
 use std::{path::Path, sync::atomic::AtomicBool};
 
 static NEVER: AtomicBool = AtomicBool::new(false);
 
 fn lists(folder: &Path, lists: u64, seed: u64) -> Dataset {
-    let options = SyntheticOptions {
-        out: folder.to_owned(),
-        lists,
-        format: Format::Parquet,
+    let options = ExtractOptions {
         seed,
-        command: "test".into(),
-        resume: false,
+        ..ExtractOptions::new(folder)
     };
-    synthetic(&options, &NEVER, &mut |_| {}).unwrap();
+    synthetic(lists, &options, &NEVER, &mut |_| {}).unwrap();
     Dataset::open(folder).unwrap()
 }
 

@@ -1,6 +1,5 @@
 //! Why something failed, for people: one line, whether a value of theirs was wrong, and which flag helps.
 
-use peelnet_dataset::DatasetError;
 use peelnet_eval::EvalError;
 use peelnet_files::{Refused, error_line};
 use peelnet_gpu::GpuError;
@@ -109,15 +108,18 @@ fn advice(error: &(dyn Error + 'static)) -> (bool, Option<&'static str>) {
     }
     if let Some(error) = find::<PeelError>(error) {
         return match error {
-            PeelError::NoScene | PeelError::SameName { .. } => (true, None),
-            PeelError::TooFewViews { .. } => (true, Some("set it with --views")),
-            PeelError::Fraction(_) => (true, Some("set it with --pixels")),
-            PeelError::TooManyLists(_) => (true, Some("set it with --synthetic")),
+            PeelError::Setting { setting, .. } => {
+                let hint = match *setting {
+                    "views" => Some("set it with --views"),
+                    "augment" => Some("lower --augment or --views"),
+                    "pixels" => Some("set it with --pixels"),
+                    "lists" => Some("set it with --synthetic"),
+                    _ => None,
+                };
+                (true, hint)
+            }
             _ => (false, None),
         };
-    }
-    if let Some(DatasetError::TooManyItems { .. }) = find(error) {
-        return (true, Some("lower --augment or --views"));
     }
     match find(error) {
         Some(EvalError::Resume { .. }) => RESUME,
@@ -181,7 +183,10 @@ mod tests {
         );
         assert_eq!(text.matches("gone").count(), 1, "{text}");
         assert!(text.ends_with(" (--adapter software)"), "{text}");
-        let failure = Failure::from(PeelError::Fraction(2.0));
+        let failure = Failure::from(PeelError::Setting {
+            setting: "pixels",
+            reason: "2 is not a fraction".to_owned(),
+        });
         assert!(failure.is_wrong_value);
         assert!(failure.to_string().ends_with(" (set it with --pixels)"));
     }

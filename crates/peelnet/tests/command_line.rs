@@ -72,6 +72,8 @@ const REFUSED: &str = "
     2 | render two.toml --out a.png --adapter nothing | nothing
     2 | render two.toml --out a.png --time 3 | timeline
     2 | extract two.toml --out d --size 8x8 --views 5 | 1 of the 5 views
+    2 | extract two.toml --out d --augment 4294967295 | at most 65536 & --augment
+    2 | extract two.toml two.toml --out d | rename one
     2 | bench two.toml two.toml --out b | two
     2 | bench two.toml --path --frames 0 --out b | at least one frame
     1 | bench two.toml --path --frames 1000 --methods abuffer --out b | 1000 frames of 1024x768 & --size

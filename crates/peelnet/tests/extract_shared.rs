@@ -104,6 +104,18 @@ fn another_command_line_is_refused() {
             "format is parquet",
         ),
         (
+            &format!("{extract} --peel dual --resume"),
+            "peeling method is sbuffer",
+        ),
+        (
+            &format!("{extract} --pixels 0.5 --resume"),
+            "fraction of pixels is 1",
+        ),
+        (
+            &format!("{extract} --augment 1 --resume"),
+            "number of copies is 0",
+        ),
+        (
             "extract --synthetic 100 --out d --resume",
             "adapter class is software",
         ),

@@ -236,33 +236,38 @@ impl FragmentBatch {
     ) -> Result<(), DatasetError> {
         let (bad, allowed) = match (self.column(column), column) {
             (ColumnSlice::F32(values), _) => {
-                let values = &values[start..];
                 let (least, most, allowed) = column.float_range();
-                let good = |v: f32| v >= least && v <= most;
-                // Without leaving early, so that it becomes vector instructions; only a failure searches.
-                let all_good = values.iter().fold(true, |all, &v| all & good(v));
-                let bad = || values.iter().position(|&v| !good(v));
-                (if all_good { None } else { bad() }, allowed)
+                let good = |v| v >= least && v <= most;
+                (first_bad(&values[start..], good), allowed)
             }
-            (ColumnSlice::U32(values), Column::View) => (
-                values[start..].iter().position(|&v| v != view),
-                "it must be the index of the part",
-            ),
-            (ColumnSlice::U32(values), Column::FragmentCount) => (
-                values[start..].iter().position(|&v| v == 0),
-                "it must be at least 1",
-            ),
+            (ColumnSlice::U32(values), Column::View) => {
+                let allowed = "it must be the index of the part";
+                (first_bad(&values[start..], |v| v == view), allowed)
+            }
+            (ColumnSlice::U32(values), Column::FragmentCount) => {
+                let allowed = "it must be at least 1";
+                (first_bad(&values[start..], |v| v > 0), allowed)
+            }
             (ColumnSlice::U32(_), _) => return Ok(()),
         };
-        let Some(i) = bad else { return Ok(()) };
-        let value = match self.column(column) {
-            ColumnSlice::F32(v) => v[start + i].to_string(),
-            ColumnSlice::U32(v) => v[start + i].to_string(),
-        };
+        let Some((i, value)) = bad else { return Ok(()) };
         let row = first_row + i as u64 + 1;
         let reason = format!(
             "row {row}, column {column}: {value} is not allowed, {allowed}; fix or remove the whole pixel, or write the dataset again"
         );
         Err(DatasetError::invalid(path, reason))
     }
+}
+
+/// The place and the text of the first value that is not good.
+fn first_bad<T: Copy + fmt::Display>(
+    values: &[T],
+    good: impl Fn(T) -> bool,
+) -> Option<(usize, String)> {
+    // Without leaving early, so that it becomes vector instructions; only a failure searches.
+    if values.iter().fold(true, |all, &v| all & good(v)) {
+        return None;
+    }
+    let i = values.iter().position(|&v| !good(v))?;
+    Some((i, values[i].to_string()))
 }

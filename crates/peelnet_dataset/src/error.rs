@@ -1,5 +1,6 @@
 //! Everything that can go wrong with a dataset, each with the file, the place and the fix.
 
+use std::fmt::Display;
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -16,21 +17,6 @@ pub enum DatasetError {
     /// A dataset, a file of one or an address that is not as it should be, or not what the caller may change. The reason ends with the fix.
     #[error("{}: {reason}", path.display())]
     Invalid { path: PathBuf, reason: String },
-    /// The output folder holds something else; the source says why a manifest is not one.
-    #[error(
-        "{}: the folder is not empty, and {found:?} in it is not a file of a dataset as its manifest lists it; choose another folder, or move that file away",
-        path.display()
-    )]
-    NotOurs {
-        path: PathBuf,
-        found: String,
-        source: Option<Box<DatasetError>>,
-    },
-    #[error(
-        "{items} work items (scenes × copies × views) are too many: at most {}",
-        crate::MAX_WORK_ITEMS
-    )]
-    TooManyItems { items: u64 },
     /// An argument that is none, whatever the dataset.
     #[error("{0}")]
     Setting(String),
@@ -54,16 +40,8 @@ impl DatasetError {
         }
     }
 
-    /// A manifest or a plan that cannot be understood.
-    pub(crate) fn manifest(path: &Path, reason: impl AsRef<str>) -> Self {
-        let reason = reason.as_ref();
-        let fix = "write the dataset again with `peelnet extract`";
-        Self::invalid(path, format!("{reason}; {fix}"))
-    }
-
     /// A file is not what the manifest says.
-    pub(crate) fn changed(path: &Path, reason: impl AsRef<str>) -> Self {
-        let reason = reason.as_ref();
+    pub(crate) fn changed(path: &Path, reason: impl Display) -> Self {
         let fix = "the file was cut or changed after it was written, so write the dataset again";
         Self::invalid(path, format!("{reason}; {fix}"))
     }

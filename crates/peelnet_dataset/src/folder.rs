@@ -16,12 +16,10 @@ use crate::formats::hash_file;
 use crate::manifest::Manifest;
 use crate::parts::{PartRecord, part_of_file};
 use crate::plan::{Plan, host};
-use crate::store::{FRAGMENTS, Folder, MANIFEST, META, PARTS, PLAN, names_in, store_at};
+use crate::store::{FRAGMENTS, Folder, MANIFEST, META, PARTS, PLAN, is_absent, names_in, store_at};
 
-/// Prefix of the hidden folder of a writer.
-const PARTIAL: &str = ".partial-";
-/// Prefix of small files that are being written.
-pub(crate) const PUT: &str = ".put-";
+/// Prefix of what a writer has in `_peelnet/` until it is finished: a hidden folder with parts, and small files.
+pub(crate) const PARTIAL: &str = ".partial-";
 /// A file in the hidden folder that its writer holds locked, with its machine's name. It is created first and removed last.
 const LOCK: &str = "lock";
 
@@ -38,18 +36,50 @@ pub(crate) struct Partial {
     pub path: PathBuf,
     lock: Option<File>,
     _unfinished: Unfinished,
+    _made: Made,
+}
+
+/// Folders that a writer made, innermost first. Dropping it removes those that are still empty.
+#[derive(Debug)]
+struct Made(Vec<PathBuf>);
+
+impl Drop for Made {
+    fn drop(&mut self) {
+        for folder in &self.0 {
+            // Not empty or gone: both are as they should be.
+            let _ = fs::remove_dir(folder);
+        }
+    }
 }
 
 impl Partial {
-    /// Creates and locks a hidden folder.
-    pub(crate) fn create(parent: &Path) -> Result<Self, DatasetError> {
+    /// Creates and locks a hidden folder in a dataset's folder, which is created where it is missing.
+    pub(crate) fn in_dataset(folder: &Path) -> Result<Self, DatasetError> {
+        let meta = folder.join(META);
+        let is_new = |a: &&Path| !a.as_os_str().is_empty() && !a.exists();
+        let mut made = vec![meta.join("parts"), meta.clone()];
+        let new = folder.ancestors().take_while(is_new);
+        made.extend(new.map(Path::to_owned));
+        let made = Made(made);
+        fs::create_dir_all(&meta).map_err(DatasetError::io(folder, "create the folder"))?;
+        Self::create(&meta, made)
+    }
+
+    /// On this machine, for a dataset on another one.
+    pub(crate) fn temporary() -> Result<Self, DatasetError> {
+        Self::create(&std::env::temp_dir(), Made(Vec::new()))
+    }
+
+    fn create(parent: &Path, _made: Made) -> Result<Self, DatasetError> {
         let hidden = tempfile::Builder::new().prefix(PARTIAL).tempdir_in(parent);
         let hidden = hidden.map_err(DatasetError::io(parent, "write into"))?;
         let _unfinished = Unfinished::new(hidden.path());
         let lock_path = hidden.path().join(LOCK);
         // Locked before it has its name: nobody sees the folder of a living writer with a lock that is free.
         let lock = || -> std::io::Result<File> {
-            let mut lock = tempfile::Builder::new().prefix(PUT).tempfile_in(parent)?;
+            let mut lock = tempfile::Builder::new()
+                .prefix(PARTIAL)
+                .tempfile_in(parent)?;
             lock.as_file().lock()?;
             lock.write_all(host().as_bytes())?;
             lock.persist(&lock_path).map_err(|e| e.error)
@@ -60,6 +90,7 @@ impl Partial {
             path: hidden.keep(),
             lock,
             _unfinished,
+            _made,
         })
     }
 }
@@ -91,35 +122,36 @@ fn remove_partial(path: &Path) -> std::io::Result<()> {
 /// The files of the dataset in a folder, in an order in which they can be removed: those that list others last. What living writers have
 /// in `_peelnet/` is left out. The first file in the folder that is not a dataset's is an error.
 fn older_files(folder: &Path) -> Result<Vec<PathBuf>, DatasetError> {
-    let store = folder_store(folder);
+    let store = Folder {
+        path: folder.to_owned(),
+        scratch: None,
+    };
     let mut control = Vec::new();
-    for meta in [META, PARTS.trim_end_matches('/')] {
+    for meta in [META, PARTS] {
         match fs::symlink_metadata(folder.join(meta)) {
-            Err(e) if e.kind() == ErrorKind::NotFound => continue,
+            Err(e) if is_absent(&e) => continue,
             Ok(found) if found.is_dir() => {}
             _ => return Err(not_ours(folder, meta, None)),
         }
         let inside = names_in(&folder.join(meta))?.into_iter();
-        let inside = inside.filter(|n| !n.starts_with(PARTIAL) && !n.starts_with(PUT));
-        control.extend(inside.map(|n| format!("{meta}/{n}")));
+        let inside = inside.filter(|name| !name.starts_with(PARTIAL));
+        control.extend(inside.map(|name| format!("{meta}/{name}")));
     }
-    control.retain(|name| format!("{name}/") != PARTS);
+    control.retain(|name| name != PARTS);
     control.sort();
     let mut listed: BTreeMap<String, u64> = BTreeMap::new();
     for name in &control {
-        let refuse = |e| not_ours(folder, name, Some(e));
         let parts = if name == PLAN {
-            Plan::read(&store).map_err(refuse)?;
-            Vec::new()
+            Plan::read(&store).map(|_| Vec::new())
         } else if name == MANIFEST {
-            let manifest = Manifest::read(&store).map_err(refuse)?;
-            manifest.map_or(Vec::new(), |m| m.parts)
+            Manifest::read(&store).map(|m| m.map_or(Vec::new(), |m| m.parts))
         } else if let Some(index) = PartRecord::index(name) {
-            let record = PartRecord::read(&store, index, None).map_err(refuse)?;
-            record.map(|r| r.part).into_iter().collect()
+            let record = PartRecord::read(&store, index, None);
+            record.map(|r| r.map(|r| r.part).into_iter().collect())
         } else {
             return Err(not_ours(folder, name, None));
         };
+        let parts = parts.map_err(|why| not_ours(folder, name, Some(why)))?;
         let files = parts.into_iter().flat_map(|part| part.files);
         listed.extend(files.map(|f| (f.name, f.bytes)));
     }
@@ -136,19 +168,13 @@ fn older_files(folder: &Path) -> Result<Vec<PathBuf>, DatasetError> {
     Ok(files)
 }
 
-fn folder_store(folder: &Path) -> Folder {
-    Folder {
-        path: folder.to_owned(),
-        scratch: None,
-    }
-}
-
+/// The output folder holds something else; or why a manifest in it is not one.
 fn not_ours(folder: &Path, found: &str, why: Option<DatasetError>) -> DatasetError {
-    DatasetError::NotOurs {
-        path: folder.to_owned(),
-        found: found.to_owned(),
-        source: why.map(Box::new),
-    }
+    let why = why.map_or(String::new(), |why| format!(": {why}"));
+    let reason = format!(
+        "the folder is not empty, and {found:?} in it is not a file of a dataset as its manifest lists it; choose another folder, or move that file away{why}"
+    );
+    DatasetError::invalid(folder, reason)
 }
 
 /// Whether a whole dataset that is written into a folder replaces an older one. Nothing is changed: for a look before work begins. With
@@ -162,8 +188,7 @@ pub fn replaces(folder: &Path, join: bool) -> Result<bool, DatasetError> {
         return Ok(false);
     };
     // What a writer that died left behind is for the next writer to sort out.
-    let is_left = hidden_names(folder)?.iter().any(|n| n.starts_with(PARTIAL));
-    Ok(!is_left && !older_files(folder)?.is_empty())
+    Ok(hidden_names(folder)?.is_empty() && !older_files(folder)?.is_empty())
 }
 
 /// Prepares a folder for a writer: removes what writers that died left in it. Returns whether there is an older dataset that a writer of a
@@ -196,7 +221,7 @@ pub(crate) fn remove_older(folder: &Path) -> Result<(), DatasetError> {
 /// Names in `_peelnet/` of what writers have there, alive or not.
 fn hidden_names(folder: &Path) -> Result<Vec<String>, DatasetError> {
     let mut names = names_in(&folder.join(META))?;
-    names.retain(|n| n.starts_with(PARTIAL) || n.starts_with(PUT));
+    names.retain(|n| n.starts_with(PARTIAL));
     Ok(names)
 }
 
@@ -227,10 +252,9 @@ pub(crate) fn remove_abandoned(folder: &Path) -> Result<bool, DatasetError> {
     let mut any_alive = false;
     for name in hidden_names(folder)? {
         let hidden = folder.join(META).join(&name);
-        if name.starts_with(PUT) {
-            // A small file of a writer that was killed while it created this one.
-            if hidden.is_file() && !is_younger(&hidden, ABANDONED_AFTER) {
-                // Another writer may have done it.
+        if hidden.is_file() {
+            // A writer was killed while it created this one; another one may have removed it.
+            if !is_younger(&hidden, ABANDONED_AFTER) {
                 let _ = fs::remove_file(&hidden);
             }
             continue;
@@ -240,7 +264,8 @@ pub(crate) fn remove_abandoned(folder: &Path) -> Result<bool, DatasetError> {
         if inside.is_empty() && (is_younger(&hidden, JUST_MADE) || !hidden.is_dir()) {
             continue;
         }
-        let is_known = |n: &String| n == LOCK || n.starts_with(FRAGMENTS) || n.starts_with(PUT);
+        let starts = [FRAGMENTS, PARTIAL];
+        let is_known = |n: &String| n == LOCK || starts.iter().any(|start| n.starts_with(start));
         let has_lock = inside.is_empty() || inside.iter().any(|n| n == LOCK);
         if !has_lock || !inside.iter().all(is_known) {
             return Err(not_ours(folder, &format!("{META}/{name}"), None));
@@ -285,34 +310,4 @@ fn remove_unrecorded(folder: &Path, hidden: &Path, inside: &[String]) -> Result<
         }
     }
     Ok(())
-}
-
-/// A dataset's folder with those around it that a writer made: dropping it removes what is still empty of them.
-#[derive(Debug)]
-pub(crate) struct MadeFolders {
-    /// Outermost first.
-    folders: Vec<PathBuf>,
-}
-
-impl MadeFolders {
-    /// Creates a folder, and what is missing of those around it.
-    pub(crate) fn create(folder: &Path) -> Result<Self, DatasetError> {
-        let is_new = |a: &&Path| !a.as_os_str().is_empty() && !a.exists();
-        let new = folder.ancestors().take_while(is_new);
-        let mut folders: Vec<PathBuf> = new.map(Path::to_owned).collect();
-        folders.reverse();
-        folders.extend([folder.join(META), folder.join(META).join("parts")]);
-        let made = Self { folders };
-        fs::create_dir_all(folder).map_err(DatasetError::io(folder, "create the folder"))?;
-        Ok(made)
-    }
-}
-
-impl Drop for MadeFolders {
-    fn drop(&mut self) {
-        for folder in self.folders.iter().rev() {
-            // Not empty or gone: both are as they should be.
-            let _ = fs::remove_dir(folder);
-        }
-    }
 }

@@ -9,7 +9,6 @@ use std::fs::File;
 use std::io::{self, Read as _};
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
-use std::sync::{Mutex, PoisonError};
 
 use peelnet_files::hex;
 use serde::{Deserialize, Serialize};
@@ -92,36 +91,31 @@ impl Format {
     }
 
     /// Starts a part in these files, which do not exist.
-    pub(crate) fn sink(
-        self,
-        files: Vec<PathBuf>,
-        threads: usize,
-    ) -> Result<Box<dyn PartSink>, DatasetError> {
+    pub(crate) fn sink(self, files: Vec<PathBuf>) -> Result<Box<dyn PartSink>, DatasetError> {
         let create = |path: PathBuf| match File::create_new(&path) {
             Ok(file) => Ok((path, file)),
             Err(e) => Err(DatasetError::io(&path, "create")(e)),
         };
-        let mut files = files
-            .into_iter()
-            .map(create)
-            .collect::<Result<Vec<_>, _>>()?;
+        let files = files.into_iter().map(create);
+        let mut files = files.collect::<Result<Vec<_>, _>>()?;
         Ok(match self {
-            Self::Csv => Box::new(csv::CsvSink::new(files.remove(0), threads)?),
-            Self::Parquet => Box::new(parquet::ParquetSink::new(files.remove(0), threads)?),
+            Self::Csv => Box::new(csv::CsvSink::new(files.remove(0))?),
+            Self::Parquet => Box::new(parquet::ParquetSink::new(files.remove(0))?),
             Self::Npy => Box::new(npy::NpySink::new(files)?),
         })
     }
 
-    /// Opens a part for reading the given columns, from [`Format::files_of`] them.
+    /// Opens a part of so many rows for reading the given columns, from [`Format::files_of`] them.
     pub(crate) fn source(
         self,
         files: &[Fetched],
         columns: &[Column],
+        rows: u64,
     ) -> Result<Box<dyn PartSource>, DatasetError> {
         Ok(match self {
             Self::Csv => Box::new(csv::CsvSource::open(&files[0], columns)?),
             Self::Parquet => Box::new(parquet::ParquetSource::open(&files[0], columns)?),
-            Self::Npy => Box::new(npy::NpySource::open(files, columns)?),
+            Self::Npy => Box::new(npy::NpySource::open(files, columns, rows)?),
         })
     }
 }
@@ -176,33 +170,6 @@ fn check_names(path: &Path, place: &str, found: &[String]) -> Result<(), Dataset
     let expected = expected.join(", ");
     let reason = format!("{place}: {problem}; the columns must be {expected}, in this order");
     Err(DatasetError::invalid(path, reason))
-}
-
-/// The results of some work on each item, in the items' order, from so many threads. Items may cost very different times: each thread
-/// takes the next one.
-pub(crate) fn in_parallel<T: Send, R: Send>(
-    threads: usize,
-    items: impl IntoIterator<Item = T, IntoIter: Send>,
-    work: impl Fn(T) -> R + Sync,
-) -> Vec<R> {
-    let items = Mutex::new(items.into_iter().enumerate());
-    let take = || items.lock().unwrap_or_else(PoisonError::into_inner).next();
-    let work_some = || {
-        let mut done = Vec::new();
-        while let Some((k, item)) = take() {
-            done.push((k, work(item)));
-        }
-        done
-    };
-    let mut done: Vec<(usize, R)> = std::thread::scope(|scope| {
-        let threads: Vec<_> = (0..threads).map(|_| scope.spawn(work_some)).collect();
-        let threads = threads.into_iter();
-        threads
-            .flat_map(|t| t.join().unwrap_or_else(|e| std::panic::resume_unwind(e)))
-            .collect()
-    });
-    done.sort_unstable_by_key(|(k, _)| *k);
-    done.into_iter().map(|(_, result)| result).collect()
 }
 
 /// Hexadecimal sha256 of some bytes.

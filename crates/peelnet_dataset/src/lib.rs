@@ -18,13 +18,12 @@
 //! pixel are adjacent and go from the nearest fragment to the farthest; (`view`, `x`, `y`) is unique in a dataset,
 //! because `view` is the index of the work item.
 //!
-//! **Writing** is streamed. [`DatasetWriter::create`] opens a hidden folder inside the dataset's, parts are written there through
-//! [`PartWriter`], and [`PartWriter::finish`] moves a part's files into place and then creates its record. A part is the dataset's once its
-//! record is there; it stays, whatever happens to its writer. Memory holds one row group (2²⁰ rows, about 60 MB) at most, whatever the
-//! number of fragments. The bytes depend on the rows alone: neither the number of threads nor the way the rows were cut into batches changes
-//! them.
+//! **Writing** is streamed: [`DatasetWriter::create`], [`PartWriter::write`], [`PartWriter::finish`], [`DatasetWriter::finish`]. Parts are
+//! written in a hidden folder; finishing one moves its files into place and then creates its record, from when on it is the dataset's,
+//! whatever happens to its writer. Memory holds one row group (2²⁰ rows, about 60 MB) at most. The bytes depend on the rows alone, not on
+//! the number of threads or the batches.
 //!
-//! **Many writers.** Writers need no coordinator, no lock and no clock: a record is created only where there is none, by one operation of
+//! **Many writers** need no coordinator, no lock and no clock: a record is created only where there is none, by one operation of
 //! the file system or the object store. A second writer of a part compares the hashes: equal ones are no error, and different ones name the
 //! part and both workers. The plan has a hash over everything that shapes the rows: scenes by their contents, the frame size, seed, flags,
 //! format, cameras, peelnet's version and the class of the adapter. A writer with another plan is refused before its first row.
@@ -32,25 +31,16 @@
 //! and [`seal`](fn@seal) does it afterwards; the manifest's bytes do not depend on who does.
 //!
 //! **Replacing.** A writer of a whole dataset that finds an older one keeps all parts aside until its end; then it removes the older one's
-//! files and puts its own where nothing is. It removes no file that neither a manifest nor a record lists. Datasets in object stores are
-//! never replaced.
-//!
-//! **Formats.** Each is one file in `formats/` behind the traits `PartSink` and `PartSource`: CSV with a header
-//! row, Parquet (PLAIN pages, snappy), and NPY as one one-dimensional array per column
-//! (`fragments-00000-cups-v0.linear_depth.npy`), which `numpy.load` opens or maps into memory directly.
+//! files, as manifest and records list them, and puts its own where nothing is. Datasets in object stores are never replaced.
 //!
 //! **Reading.** [`Dataset::open`] checks the manifest and the sizes of all files; the hash of a file is checked before its
 //! first row is read. [`Dataset::batches`] streams whole pixels, [`Dataset::read_columns`] loads chosen columns. Every value is
-//! checked against its column's range on the way in *and* on the way out, so a NaN cannot reach a network. Parquet files have statistics by
-//! row group and page: a query for one view reads one view.
+//! checked against its column's range on the way in *and* on the way out, so a NaN cannot reach a network. [`summary`] recomputes what the
+//! rows claim about one another, and [`split`] says which pixels train and which judge.
 //!
 //! **Object stores.** With the feature `object-store`, `s3://bucket/prefix`, `gs://…` and `az://…` stand wherever a folder does, as
 //! `file:///…` does always. Settings and credentials come from the environment (`AWS_…`, `GOOGLE_…`, `AZURE_…`). A part is written on this
 //! machine and sent by one conditional request for each file; a part that is read is fetched whole.
-//!
-//! The [`Dataset::hash`] covers (part index, sha256) pairs and nothing of the way they were made: it is the same for a dataset written in
-//! one run, by shards, or with interruptions. [`summary`] recomputes what the rows claim about one another, and [`split`] says which pixels
-//! train and which judge.
 
 mod column;
 mod error;

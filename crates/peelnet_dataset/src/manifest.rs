@@ -170,28 +170,27 @@ impl Part {
 impl Manifest {
     /// Reads and checks the manifest of a sealed dataset; `None` where there is none.
     pub(crate) fn read(store: &dyn Store) -> Result<Option<Self>, DatasetError> {
-        let wrong = |reason: String| DatasetError::manifest(&store.shown(MANIFEST), reason);
-        let manifest: Option<Self> = read_json(store, MANIFEST, "manifest", wrong)?;
-        if let Some(manifest) = &manifest {
-            manifest.check().map_err(wrong)?;
-        }
-        Ok(manifest)
+        read_json(store, MANIFEST, "manifest", EXTRACT_AGAIN, Self::check)
     }
 
     /// What the types cannot say.
     pub(crate) fn check(&self) -> Result<(), String> {
-        let names: Vec<_> = self.columns.iter().map(|c| c.name.as_str()).collect();
-        ensure(self.columns == columns(), || {
+        if self.columns != columns() {
+            let names: Vec<_> = self.columns.iter().map(|c| c.name.as_str()).collect();
             let expected = Column::ALL.map(Column::name);
-            format!("the columns are {names:?}, expected {expected:?} in this order")
-        })?;
+            return Err(format!(
+                "the columns are {names:?}, expected {expected:?} in this order"
+            ));
+        }
         let (items, parts) = (self.work_items, self.parts.len());
-        ensure(items <= MAX_WORK_ITEMS, || {
-            format!("{items} work items, and at most {MAX_WORK_ITEMS} are read")
-        })?;
-        ensure(parts == items as usize, || {
-            format!("{items} work items, but {parts} parts")
-        })?;
+        if items > MAX_WORK_ITEMS {
+            return Err(format!(
+                "{items} work items, and at most {MAX_WORK_ITEMS} are read"
+            ));
+        }
+        if parts != items as usize {
+            return Err(format!("{items} work items, but {parts} parts"));
+        }
         let mut names = BTreeSet::new();
         for (k, part) in self.parts.iter().enumerate() {
             let checked = self.check_part(k, part, &mut names);
@@ -199,12 +198,14 @@ impl Manifest {
         }
         let rows = self.parts.iter().map(|p| p.rows);
         let rows = rows.fold(0, u64::saturating_add);
-        ensure(rows == self.rows, || {
-            format!("`rows` is {} but the parts hold {rows}", self.rows)
-        })?;
-        ensure(self.hash == hash_of_parts(&self.parts), || {
-            "`hash` does not fit the files' hashes".to_owned()
-        })
+        if rows != self.rows {
+            let stated = self.rows;
+            return Err(format!("`rows` is {stated} but the parts hold {rows}"));
+        }
+        if self.hash != hash_of_parts(&self.parts) {
+            return Err("`hash` does not fit the files' hashes".to_owned());
+        }
+        Ok(())
     }
 
     fn check_part<'a>(
@@ -214,37 +215,42 @@ impl Manifest {
         names: &mut BTreeSet<&'a str>,
     ) -> Result<(), String> {
         let (index, scene, rows) = (part.index, part.scene, part.rows);
-        ensure(index as usize == k, || {
-            format!("index {index} where {k} is expected")
-        })?;
-        ensure((scene as usize) < self.scenes.len(), || {
-            format!("scene {scene} is not listed")
-        })?;
+        if index as usize != k {
+            return Err(format!("index {index} where {k} is expected"));
+        }
+        if scene as usize >= self.scenes.len() {
+            return Err(format!("scene {scene} is not listed"));
+        }
         let (format, found) = (self.format, part.files.len());
         let expected = format.files_of_a_part();
-        ensure(found == expected, || {
-            format!("{found} files, a part in format {format} has {expected}")
-        })?;
-        for file in &part.files {
-            let (name, bytes) = (file.name.as_str(), file.bytes);
+        if found != expected {
+            return Err(format!(
+                "{found} files, a part in format {format} has {expected}"
+            ));
+        }
+        for FileEntry { name, bytes, .. } in &part.files {
             // Names come from outside: they must not lead out of the folder on any system.
             let leads_out = |c: char| c.is_control() || matches!(c, '/' | '\\' | ':');
-            ensure(
-                name.starts_with(FRAGMENTS) && !name.contains(leads_out),
-                || format!("{name:?} is not a plain file name that begins with {FRAGMENTS}"),
-            )?;
-            ensure(names.insert(name), || format!("{name:?} is listed twice"))?;
+            if !name.starts_with(FRAGMENTS) || name.contains(leads_out) {
+                return Err(format!(
+                    "{name:?} is not a plain file name that begins with {FRAGMENTS}"
+                ));
+            }
+            if !names.insert(name) {
+                return Err(format!("{name:?} is listed twice"));
+            }
             // Of Parquet's compressed rows, only the file itself can say it.
-            ensure(
-                bytes >= format.least_row_bytes().saturating_mul(rows),
-                || format!("{rows} rows cannot be in {bytes} bytes of {name:?}"),
-            )?;
+            if *bytes < format.least_row_bytes().saturating_mul(rows) {
+                return Err(format!(
+                    "{rows} rows cannot be in {bytes} bytes of {name:?}"
+                ));
+            }
         }
         let mut groups = part.row_groups.iter();
-        let grouped = groups.try_fold(0u64, |a, &g| a.checked_add(g));
-        ensure(grouped == Some(rows), || {
-            format!("the row groups do not add up to {rows} rows")
-        })
+        if groups.try_fold(0u64, |a, &g| a.checked_add(g)) != Some(rows) {
+            return Err(format!("the row groups do not add up to {rows} rows"));
+        }
+        Ok(())
     }
 
     /// Whether every work item of the whole dataset has a part here.
@@ -263,13 +269,17 @@ impl Manifest {
     }
 }
 
-/// Reads a manifest, plan or record; `None` where there is none. The schema version first, because another version's fields are bound to
-/// look wrong.
+/// What helps where a manifest or a plan cannot be understood.
+pub(crate) const EXTRACT_AGAIN: &str = "write the dataset again with `peelnet extract`";
+
+/// Reads and checks a manifest, plan or record; `None` where there is none. The schema version first, because another version's fields are
+/// bound to look wrong. An error ends with `fix`.
 pub(crate) fn read_json<T: DeserializeOwned>(
     store: &dyn Store,
     name: &str,
     what: &str,
-    wrong: impl Fn(String) -> DatasetError,
+    fix: &str,
+    check: impl FnOnce(&T) -> Result<(), String>,
 ) -> Result<Option<T>, DatasetError> {
     /// The version alone; everything else is skipped.
     #[derive(Deserialize)]
@@ -280,34 +290,31 @@ pub(crate) fn read_json<T: DeserializeOwned>(
     let Some(bytes) = store.get(name, MAX_BYTES)? else {
         return Ok(None);
     };
-    let version: Version =
-        serde_json::from_slice(&bytes).map_err(|e| wrong(format!("not JSON: {e}")))?;
-    match version.schema.as_u64() {
-        None => Err(wrong("the field `schema` is missing".to_owned())),
-        Some(found) if found != u64::from(SCHEMA_VERSION) => Err(DatasetError::invalid(
-            &store.shown(name),
-            format!(
-                "schema version {found}, but this program reads version {SCHEMA_VERSION}; write the dataset again with this version's `peelnet extract`"
-            ),
-        )),
+    let read = || -> Result<T, String> {
+        let version: Version =
+            serde_json::from_slice(&bytes).map_err(|e| format!("not JSON: {e}"))?;
+        let Some(found) = version.schema.as_u64() else {
+            return Err("the field `schema` is missing".to_owned());
+        };
+        if found != u64::from(SCHEMA_VERSION) {
+            return Err(format!(
+                "schema version {found}, but this program reads version {SCHEMA_VERSION}"
+            ));
+        }
         // From the text again, so that the message has the line.
-        Some(_) => serde_json::from_slice(&bytes)
-            .map(Some)
-            .map_err(|e| wrong(format!("wrong {what}: {e}"))),
-    }
+        let value = serde_json::from_slice(&bytes).map_err(|e| format!("wrong {what}: {e}"))?;
+        check(&value)?;
+        Ok(value)
+    };
+    let wrong = |reason| DatasetError::invalid(&store.shown(name), format!("{reason}; {fix}"));
+    read().map(Some).map_err(wrong)
 }
 
-/// The text of a manifest, plan or record.
 pub(crate) fn to_json(value: &impl Serialize) -> String {
     let text = serde_json::to_string_pretty(value);
     text.expect("string keys and finite numbers only") + "\n"
 }
 
-fn ensure(holds: bool, reason: impl FnOnce() -> String) -> Result<(), String> {
-    if holds { Ok(()) } else { Err(reason()) }
-}
-
-/// The columns of every dataset.
 pub(crate) fn columns() -> Vec<ColumnEntry> {
     let entry = |column: Column| ColumnEntry {
         name: column.name().to_owned(),

@@ -4,12 +4,13 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
+use peelnet_files::printable;
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::error::DatasetError;
 use crate::folder;
-use crate::formats::in_parallel;
-use crate::manifest::{Manifest, Part, SCHEMA_VERSION, read_json, to_json};
+use crate::manifest::{EXTRACT_AGAIN, Manifest, Part, read_json, to_json};
 use crate::plan::Plan;
 use crate::store::{FRAGMENTS, MANIFEST, PARTS, Store, open_store, store_at};
 
@@ -19,10 +20,10 @@ const READERS: usize = 32;
 /// A finished part. It is the dataset's once this record is there. The file is its JSON, with these names.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct PartRecord {
-    /// [`SCHEMA_VERSION`] of the writer.
-    schema: u32,
+    /// [`SCHEMA_VERSION`](crate::SCHEMA_VERSION) of the writer.
+    pub schema: u32,
     /// Hash of the plan that the writer followed.
-    plan: String,
+    pub plan: String,
     /// The writer's name.
     pub worker: String,
     /// The part, as it will be in the manifest.
@@ -30,23 +31,14 @@ pub(crate) struct PartRecord {
 }
 
 impl PartRecord {
-    pub(crate) fn new(plan: &Plan, worker: &str, part: Part) -> Self {
-        Self {
-            schema: SCHEMA_VERSION,
-            plan: plan.hash.clone(),
-            worker: worker.to_owned(),
-            part,
-        }
-    }
-
     /// The name of a part's record.
     pub(crate) fn name(index: u32) -> String {
-        format!("{PARTS}{index:05}.json")
+        format!("{PARTS}/{index:05}.json")
     }
 
     /// The part whose record has this name.
     pub(crate) fn index(name: &str) -> Option<u32> {
-        let digits = name.strip_prefix(PARTS)?.strip_suffix(".json")?;
+        let (_, digits) = name.strip_suffix(".json")?.rsplit_once('/')?;
         digits.parse().ok().filter(|&k| Self::name(k) == name)
     }
 
@@ -56,49 +48,24 @@ impl PartRecord {
         index: u32,
         plan: Option<&Plan>,
     ) -> Result<Option<Self>, DatasetError> {
-        let name = Self::name(index);
-        let wrong = |reason: String| {
-            let fix = "remove this record and finish the part with `peelnet extract --resume`";
-            DatasetError::invalid(
-                &store.shown(&name),
-                format!("part {index}: {reason}; {fix}"),
-            )
-        };
-        let Some(record) = read_json::<Self>(store, &name, "record", wrong)? else {
-            return Ok(None);
-        };
-        let worker = peelnet_files::printable(&record.worker);
-        if record.part.index != index {
-            return Err(wrong(format!(
-                "the record of worker {worker} is of part {}, so it was copied or renamed",
-                record.part.index
-            )));
-        }
-        if let Some(plan) = plan.filter(|p| p.hash != record.plan) {
-            let start = |hash: &str| -> String {
-                let hash = peelnet_files::printable(hash);
-                hash.chars().take(12).collect()
+        let fix = "remove this record and finish the part with `peelnet extract --resume`";
+        read_json(store, &Self::name(index), "record", fix, |record: &Self| {
+            let (worker, other) = (printable(&record.worker), record.part.index);
+            if other != index {
+                return Err(format!(
+                    "part {index}: the record of worker {worker} is of part {other}, so it was copied or renamed"
+                ));
+            }
+            let Some(plan) = plan.filter(|p| p.hash != record.plan) else {
+                return Ok(());
             };
-            return Err(wrong(format!(
-                "worker {worker} wrote it by another plan ({}) than the dataset's ({}): another version, size, seed, flag or adapter",
+            let start = |hash: &str| -> String { printable(hash).chars().take(12).collect() };
+            Err(format!(
+                "part {index}: worker {worker} wrote it by another plan ({}) than the dataset's ({}): another version, size, seed, flag or adapter",
                 start(&record.plan),
                 start(&plan.hash)
-            )));
-        }
-        Ok(Some(record))
-    }
-
-    /// Makes this the part's record. Where there is one already, it must be of the same bytes.
-    pub(crate) fn commit(&self, store: &dyn Store, plan: &Plan) -> Result<(), DatasetError> {
-        let index = self.part.index;
-        if store.put_if_absent(&Self::name(index), to_json(self).as_bytes())? {
-            return Ok(());
-        }
-        match Self::read(store, index, Some(plan))? {
-            Some(there) => self.check_same(store, &there),
-            // Gone again: somebody removes records while this works.
-            None => Err(DatasetError::busy(store.path())),
-        }
+            ))
+        })
     }
 
     /// An error if another record of this part is of other bytes.
@@ -124,7 +91,7 @@ pub(crate) fn part_of_file(name: &str) -> Option<u32> {
 /// The work items of a plan that have a record.
 pub(crate) fn recorded(store: &dyn Store, plan: &Plan) -> Result<BTreeSet<u32>, DatasetError> {
     let names = store.list(PARTS)?.into_keys();
-    let parts = names.filter_map(|name| PartRecord::index(&format!("{PARTS}{name}")));
+    let parts = names.filter_map(|name| PartRecord::index(&format!("{PARTS}/{name}")));
     Ok(parts.filter(|k| *k < plan.header.work_items).collect())
 }
 
@@ -138,7 +105,7 @@ pub fn seal(path: impl AsRef<Path>) -> Result<Manifest, DatasetError> {
     let store = open_store(path.as_ref())?;
     let plan = Plan::read(&*store)?.ok_or_else(|| no_manifest(path.as_ref()))?;
     let Some(manifest) = whole(&*store, &plan)? else {
-        return Err(unsealed(&*store, &plan));
+        return Err(unsealed(&*store, &plan)?);
     };
     if let Some(folder) = store.folder() {
         folder::remove_abandoned(folder)?;
@@ -153,11 +120,8 @@ pub(crate) fn no_manifest(path: &Path) -> DatasetError {
 }
 
 /// The error of a dataset that lacks parts, or lacks its seal alone.
-pub(crate) fn unsealed(store: &dyn Store, plan: &Plan) -> DatasetError {
-    let recorded = match recorded(store, plan) {
-        Ok(recorded) => recorded,
-        Err(error) => return error,
-    };
+pub(crate) fn unsealed(store: &dyn Store, plan: &Plan) -> Result<DatasetError, DatasetError> {
+    let recorded = recorded(store, plan)?;
     let of = plan.header.work_items;
     let reason = match (0..of).find(|k| !recorded.contains(k)) {
         Some(first) => format!(
@@ -168,7 +132,7 @@ pub(crate) fn unsealed(store: &dyn Store, plan: &Plan) -> DatasetError {
             "all {of} parts are there, but the dataset is not sealed; run `peelnet seal` on it"
         ),
     };
-    DatasetError::invalid(store.path(), reason)
+    Ok(DatasetError::invalid(store.path(), reason))
 }
 
 /// How many parts of a dataset that is not sealed are finished, and how many it will have; `None` if it is sealed, or none.
@@ -188,10 +152,13 @@ pub fn unsealed_parts(path: impl AsRef<Path>) -> Result<Option<(u32, u32)>, Data
 
 /// Writes the manifest if every part is there and it is not, and returns it; `None` if parts are missing.
 pub(crate) fn whole(store: &dyn Store, plan: &Plan) -> Result<Option<Manifest>, DatasetError> {
-    let wrong = |reason: &str| DatasetError::manifest(&store.shown(MANIFEST), reason);
+    let wrong = |name: &str, reason: &str| {
+        let reason = format!("{reason}; {EXTRACT_AGAIN}");
+        Err(DatasetError::invalid(&store.shown(name), reason))
+    };
     if let Some(manifest) = Manifest::read(store)? {
         if manifest.plan != plan.hash {
-            return Err(wrong("the manifest is of another plan than plan.json"));
+            return wrong(MANIFEST, "the manifest is of another plan than plan.json");
         }
         check_files(store, &manifest, true)?;
         return Ok(Some(manifest));
@@ -201,19 +168,26 @@ pub(crate) fn whole(store: &dyn Store, plan: &Plan) -> Result<Option<Manifest>, 
         return Ok(None);
     }
     let read = |index| Ok(PartRecord::read(store, index, Some(plan))?.map(|r| r.part));
-    let parts = in_parallel(READERS, recorded, read).into_iter();
-    let Some(parts) = parts.collect::<Result<Option<Vec<Part>>, DatasetError>>()? else {
+    let readers = rayon::ThreadPoolBuilder::new().num_threads(READERS).build();
+    let readers = readers.map_err(std::io::Error::other);
+    let readers = readers.map_err(DatasetError::io(store.path(), "start to read"))?;
+    let parts: Vec<Option<Part>> = readers.install(|| {
+        let parts = recorded.into_par_iter().map(read);
+        parts.collect::<Result<_, DatasetError>>()
+    })?;
+    let Some(parts) = parts.into_iter().collect::<Option<Vec<Part>>>() else {
         return Ok(None);
     };
     let manifest = plan.manifest(parts);
     check_files(store, &manifest, true)?;
-    let checked = manifest.check();
-    checked.map_err(|reason| DatasetError::manifest(&store.shown(PARTS), reason))?;
-    if !store.put_if_absent(MANIFEST, to_json(&manifest).as_bytes())? {
-        // Another writer came to its end at the same time.
-        if Manifest::read(store)?.as_ref() != Some(&manifest) {
-            return Err(wrong("the manifest that is there is of other parts"));
-        }
+    if let Err(reason) = manifest.check() {
+        return wrong(PARTS, &reason);
+    }
+    // Another writer may come to its end at the same time.
+    if !store.put_if_absent(MANIFEST, to_json(&manifest).as_bytes())?
+        && Manifest::read(store)?.as_ref() != Some(&manifest)
+    {
+        return wrong(MANIFEST, "the manifest that is there is of other parts");
     }
     Ok(Some(manifest))
 }

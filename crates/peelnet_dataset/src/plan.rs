@@ -13,8 +13,8 @@ use serde::{Deserialize, Serialize};
 use crate::error::DatasetError;
 use crate::formats::{Format, sha256};
 use crate::manifest::{
-    MAX_WORK_ITEMS, Manifest, Part, SCHEMA_VERSION, SceneEntry, columns, hash_of_parts, read_json,
-    to_json,
+    EXTRACT_AGAIN, MAX_WORK_ITEMS, Manifest, Part, SCHEMA_VERSION, SceneEntry, columns,
+    hash_of_parts, read_json, to_json,
 };
 use crate::store::{PLAN, Store};
 
@@ -59,15 +59,15 @@ pub struct Header {
 impl Header {
     /// Refuses what no dataset has.
     pub(crate) fn check(&self, folder: &Path) -> Result<(), DatasetError> {
-        if self.work_items > MAX_WORK_ITEMS {
-            return Err(DatasetError::TooManyItems {
-                items: self.work_items.into(),
-            });
-        }
-        let reason = if self.scenes.is_empty() || self.work_items == 0 {
-            "a dataset needs at least one scene and one view"
+        let items = self.work_items;
+        let reason = if items > MAX_WORK_ITEMS {
+            format!(
+                "{items} work items (scenes × copies × views) are too many: at most {MAX_WORK_ITEMS}"
+            )
+        } else if self.scenes.is_empty() || items == 0 {
+            "a dataset needs at least one scene and one view".to_owned()
         } else if !(self.pixels_fraction > 0.0 && self.pixels_fraction <= 1.0) {
-            "the fraction of pixels must be above 0 and at most 1"
+            "the fraction of pixels must be above 0 and at most 1".to_owned()
         } else {
             return Ok(());
         };
@@ -129,36 +129,40 @@ impl Plan {
         sha256(lines.as_bytes())
     }
 
-    /// The first field in which two plans differ, with both values.
-    fn difference(&self, other: &Self) -> Option<(String, String, String)> {
-        let (mine, others) = (self.fields(), other.fields());
+    /// An error where another plan differs, with the first field and both values.
+    fn check_same(&self, store: &dyn Store, there: &Self) -> Result<(), DatasetError> {
+        let (mine, theirs) = (self.fields(), there.fields());
         let value = |fields: &[(String, String)], name: &str| {
             let found = fields.iter().find(|(n, _)| n == name);
             found.map_or("nothing".to_owned(), |(_, value)| value.clone())
         };
-        let names = mine.iter().chain(&others).map(|(name, _)| name);
-        let mut values = names.map(|n| (n.clone(), value(&mine, n), value(&others, n)));
-        values.find(|(_, mine, others)| mine != others)
+        for (field, _) in mine.iter().chain(&theirs) {
+            let (mine, theirs) = (value(&mine, field), value(&theirs, field));
+            if mine != theirs {
+                let reason = format!(
+                    "the dataset there has another plan: its {field} is {theirs} (worker {}), and here (worker {}) it is {mine}; use the same command, version and adapter, or another folder",
+                    there.header.worker, self.header.worker
+                );
+                return Err(DatasetError::invalid(store.path(), reason));
+            }
+        }
+        Ok(())
     }
 
     /// Reads and checks a dataset's plan; `None` where there is none.
     pub(crate) fn read(store: &dyn Store) -> Result<Option<Self>, DatasetError> {
-        let wrong = |reason: String| DatasetError::manifest(&store.shown(PLAN), reason);
-        let Some(plan) = read_json::<Self>(store, PLAN, "plan", wrong)? else {
-            return Ok(None);
-        };
-        let items = plan.header.work_items;
-        if items == 0 || items > MAX_WORK_ITEMS {
-            return Err(wrong(format!(
-                "{items} work items, and from 1 to {MAX_WORK_ITEMS} are read"
-            )));
-        }
-        if plan.hash != plan.computed_hash() {
-            return Err(wrong(
-                "`hash` does not fit the plan: it was edited".to_owned(),
-            ));
-        }
-        Ok(Some(plan))
+        read_json(store, PLAN, "plan", EXTRACT_AGAIN, |plan: &Self| {
+            let items = plan.header.work_items;
+            if !(1..=MAX_WORK_ITEMS).contains(&items) {
+                return Err(format!(
+                    "{items} work items, and from 1 to {MAX_WORK_ITEMS} are read"
+                ));
+            }
+            match plan.hash == plan.computed_hash() {
+                true => Ok(()),
+                false => Err("`hash` does not fit the plan: it was edited".to_owned()),
+            }
+        })
     }
 
     /// Makes this the dataset's plan, or checks that the one that is there is the same; the error names the first difference. Returns the
@@ -175,16 +179,8 @@ impl Plan {
         let Some(there) = there else {
             return Err(DatasetError::busy(store.path()));
         };
-        match self.difference(&there) {
-            None => Ok((there, false)),
-            Some((field, mine, theirs)) => Err(DatasetError::invalid(
-                store.path(),
-                format!(
-                    "the dataset there has another plan: its {field} is {theirs} (worker {}), and here (worker {}) it is {mine}; use the same command, version and adapter, or another folder",
-                    there.header.worker, self.header.worker
-                ),
-            )),
-        }
+        self.check_same(store, &there)?;
+        Ok((there, false))
     }
 
     /// The manifest of these parts.
@@ -261,13 +257,10 @@ impl fmt::Display for Shard {
 
 /// The machine's name, as the system says it.
 pub(crate) fn host() -> String {
-    let file = || std::fs::read_to_string("/proc/sys/kernel/hostname").ok();
-    let variable = || {
-        ["HOSTNAME", "COMPUTERNAME"]
-            .iter()
-            .find_map(|name| std::env::var(name).ok())
-    };
-    let name = file().or_else(variable).unwrap_or_default();
+    let file = std::fs::read_to_string("/proc/sys/kernel/hostname").ok();
+    let variable = |name| std::env::var(name).ok();
+    let name = file.or_else(|| variable("HOSTNAME").or_else(|| variable("COMPUTERNAME")));
+    let name = name.unwrap_or_default();
     match peelnet_files::printable(name.trim()) {
         name if name.is_empty() => "host".to_owned(),
         name => name.into_owned(),

@@ -1,6 +1,5 @@
 //! Opening a dataset and reading its rows.
 
-use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -40,7 +39,7 @@ impl Dataset {
         let store = open_store(path)?;
         let Some(manifest) = Manifest::read(&*store)? else {
             return Err(match Plan::read(&*store)? {
-                Some(plan) => parts::unsealed(&*store, &plan),
+                Some(plan) => parts::unsealed(&*store, &plan)?,
                 None => parts::no_manifest(path),
             });
         };
@@ -125,13 +124,12 @@ impl Dataset {
         rows_per_batch: usize,
         mut keep: impl FnMut(&Part) -> bool,
     ) -> Batches<'_> {
-        let parts = (0..self.manifest.parts.len())
-            .filter(|&k| keep(&self.manifest.parts[k]))
-            .collect();
+        let parts = (0..self.manifest.parts.len()).filter(|&k| keep(&self.manifest.parts[k]));
+        let parts: Vec<usize> = parts.collect();
         Batches {
             dataset: self,
             rows_per_batch: rows_per_batch.max(1),
-            parts,
+            parts: parts.into_iter(),
             current: None,
             held_back: FragmentBatch::default(),
             failed: false,
@@ -207,7 +205,7 @@ impl OpenPart {
             index: part.index,
             expected: part.rows,
             columns: columns.to_vec(),
-            source: format.source(&files, columns)?,
+            source: format.source(&files, columns, part.rows)?,
             files,
             rows: 0,
         };
@@ -248,7 +246,7 @@ impl OpenPart {
 pub struct Batches<'a> {
     dataset: &'a Dataset,
     rows_per_batch: usize,
-    parts: VecDeque<usize>,
+    parts: std::vec::IntoIter<usize>,
     current: Option<OpenPart>,
     /// Rows of the last pixel that was read, which may go on.
     held_back: FragmentBatch,
@@ -259,45 +257,37 @@ impl Batches<'_> {
     fn next_batch(&mut self) -> Result<Option<FragmentBatch>, DatasetError> {
         let mut batch = std::mem::take(&mut self.held_back);
         loop {
-            let part = match &mut self.current {
+            let mut part = match self.current.take() {
                 Some(part) => part,
-                None => match self.parts.pop_front() {
-                    Some(k) => self
-                        .current
-                        .insert(OpenPart::open(self.dataset, k, &Column::ALL)?),
+                None => match self.parts.next() {
+                    Some(k) => OpenPart::open(self.dataset, k, &Column::ALL)?,
                     None => return Ok((!batch.is_empty()).then_some(batch)),
                 },
             };
-            let wanted = self
-                .rows_per_batch
-                .saturating_sub(batch.len())
-                .clamp(1, CHUNK_ROWS);
-            if part.read(wanted, &mut batch)? == 0 {
-                // Parts are views: a pixel never goes on in the next one.
-                self.current = None;
-                if batch.len() >= self.rows_per_batch {
-                    return Ok(Some(batch));
-                }
-                continue;
-            }
-            if batch.len() < self.rows_per_batch {
-                continue;
-            }
-            // The last pixel may go on behind the rows that were read.
-            let last = batch.len() - 1;
-            let ends = |&i: &usize| !batch.same_pixel(i - 1, last);
-            if let Some(end) = (1..=last).rev().find(ends) {
-                self.held_back.extend_from(&batch, end..batch.len());
-                batch.truncate(end);
-                return Ok(Some(batch));
-            }
-            // A single pixel fills the batch: read on until it ends.
-            if batch.len() > MAX_PIXEL_ROWS {
+            let wanted = self.rows_per_batch.saturating_sub(batch.len());
+            let ended = part.read(wanted.clamp(1, CHUNK_ROWS), &mut batch)? == 0;
+            let is_full = batch.len() >= self.rows_per_batch;
+            // Parts are views: a pixel never goes on in the next one. Of a part that goes on, its last pixel may.
+            let end = match batch.len() {
+                rows if ended || !is_full => rows,
+                rows => (1..rows)
+                    .rev()
+                    .find(|&i| !batch.same_pixel(i - 1, rows - 1))
+                    .unwrap_or(0),
+            };
+            if end == 0 && batch.len() > MAX_PIXEL_ROWS {
                 let (x, y) = (batch.x[0], batch.y[0]);
                 let reason = format!(
                     "pixel ({x}, {y}) has more than {MAX_PIXEL_ROWS} fragments; leave it out, or write the dataset again"
                 );
                 return Err(DatasetError::invalid(part.shown(0), reason));
+            }
+            self.current = (!ended).then_some(part);
+            // A single pixel may fill the batch: then it is read on until that ends.
+            if is_full && end > 0 {
+                self.held_back.extend_from(&batch, end..batch.len());
+                batch.truncate(end);
+                return Ok(Some(batch));
             }
         }
     }

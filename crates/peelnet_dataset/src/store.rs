@@ -12,14 +12,14 @@ mod remote;
 use std::collections::BTreeMap;
 use std::fmt;
 use std::fs::{self, File};
-use std::io::{ErrorKind, Write as _};
+use std::io::{Error, ErrorKind, Write as _};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use peelnet_files::is_remote;
 
 use crate::error::DatasetError;
-use crate::folder::PUT;
+use crate::folder::PARTIAL;
 use crate::formats::hash_file;
 
 /// The folder of everything that is not rows. Its name begins with `_`: readers of whole folders skip it.
@@ -29,7 +29,7 @@ pub(crate) const PLAN: &str = "_peelnet/plan.json";
 /// The manifest of a sealed dataset.
 pub(crate) const MANIFEST: &str = "_peelnet/manifest.json";
 /// The records of finished parts.
-pub(crate) const PARTS: &str = "_peelnet/parts/";
+pub(crate) const PARTS: &str = "_peelnet/parts";
 /// Prefix of all parts' file names.
 pub(crate) const FRAGMENTS: &str = "fragments-";
 
@@ -55,7 +55,6 @@ impl Fetched {
 
 /// A folder, or a prefix of a bucket. Names are relative, with `/`.
 pub(crate) trait Store: fmt::Debug + Send + Sync {
-    /// The dataset's path, for messages.
     fn path(&self) -> &Path;
 
     /// The folder of this machine that it is, where it is one: its files are replaced, and what writers that died left there is removed.
@@ -63,7 +62,7 @@ pub(crate) trait Store: fmt::Debug + Send + Sync {
         None
     }
 
-    /// Names and lengths of the files directly under a prefix, which is empty or ends with `/`. None where there is no such prefix.
+    /// Names and lengths of the files directly under a prefix, which may be empty. None where there is no such prefix.
     fn list(&self, prefix: &str) -> Result<BTreeMap<String, u64>, DatasetError>;
 
     /// A small file's contents; `None` where it does not exist.
@@ -87,7 +86,6 @@ pub(crate) trait Store: fmt::Debug + Send + Sync {
     }
 }
 
-/// A folder.
 #[derive(Clone, Debug)]
 pub(crate) struct Folder {
     pub path: PathBuf,
@@ -113,7 +111,7 @@ impl Store for Folder {
                 Ok(metadata) if metadata.is_dir() => {}
                 Ok(metadata) => drop(all.insert(name, metadata.len())),
                 // Another writer's, gone between the two looks.
-                Err(e) if e.kind() == ErrorKind::NotFound => {}
+                Err(e) if is_absent(&e) => {}
                 Err(e) => return Err(DatasetError::io(&folder, "list")(e)),
             }
         }
@@ -133,20 +131,13 @@ impl Store for Folder {
         let target = self.path.join(name);
         let folder = peelnet_files::folder_of(&target);
         fs::create_dir_all(folder).map_err(DatasetError::io(folder, "create the folder"))?;
-        let write = || -> std::io::Result<bool> {
-            let mut builder = tempfile::Builder::new();
-            // Temporary files are private by default; a dataset has the permissions of any new file.
-            #[cfg(unix)]
-            builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-            let mut file = builder
-                .prefix(PUT)
-                .tempfile_in(self.scratch.as_deref().unwrap_or(folder))?;
-            let _unfinished = peelnet_files::Unfinished::new(file.path());
+        let scratch = self.scratch.as_deref().unwrap_or(folder);
+        let write = || {
+            let (mut file, _unfinished) = peelnet_files::temporary(scratch, PARTIAL)?;
             file.write_all(bytes)?;
             match file.persist_noclobber(&target) {
-                Ok(_) => Ok(true),
                 Err(e) if e.error.kind() == ErrorKind::AlreadyExists => Ok(false),
-                Err(e) => Err(e.error),
+                persisted => persisted.map(|_| true).map_err(|e| e.error),
             }
         };
         write().map_err(DatasetError::io(&target, "write"))
@@ -181,13 +172,18 @@ impl Store for Folder {
     }
 }
 
+/// Whether an error says that nothing has a name, in a folder or in no folder.
+pub(crate) fn is_absent(error: &Error) -> bool {
+    matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory)
+}
+
 /// Names of what lies in a folder, sorted; none where there is no such folder.
 pub(crate) fn names_in(folder: &Path) -> Result<Vec<String>, DatasetError> {
     let name = |entry: std::io::Result<fs::DirEntry>| {
         entry.map(|e| e.file_name().to_string_lossy().into_owned())
     };
     let names = match fs::read_dir(folder) {
-        Err(e) if matches!(e.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => Ok(vec![]),
+        Err(e) if is_absent(&e) => Ok(vec![]),
         entries => entries.and_then(|entries| entries.map(name).collect()),
     };
     let mut names: Vec<String> = names.map_err(DatasetError::io(folder, "list"))?;
@@ -256,13 +252,11 @@ fn object(path: &Path) -> Result<(Arc<dyn Store>, String), DatasetError> {
     Ok((store, name.to_owned()))
 }
 
-/// A store of another machine.
 #[cfg(feature = "object-store")]
 fn remote(url: &str) -> Result<Arc<dyn Store>, DatasetError> {
     remote::Remote::open(url)
 }
 
-/// A store of another machine.
 #[cfg(not(feature = "object-store"))]
 fn remote(url: &str) -> Result<Arc<dyn Store>, DatasetError> {
     let scheme = url.split_once("://").map_or("", |(scheme, _)| scheme);

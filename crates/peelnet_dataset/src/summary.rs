@@ -12,8 +12,6 @@ use crate::reader::Dataset;
 const LISTED: usize = 20;
 /// Bins of the histogram of α.
 const ALPHA_BINS: usize = 20;
-/// The check of the order, behind those of columns that the rows of a pixel imply.
-const DEPTH: usize = 4;
 
 /// A dataset in figures.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -228,40 +226,33 @@ impl Summary {
         }
         bins[bin].count += 1;
 
-        let alpha_sum: f64 = batch.one_minus_alpha[pixel.clone()]
-            .iter()
-            .map(|&v| 1.0 - f64::from(v))
-            .sum();
-        let tolerances = [
-            peelnet_core::tolerance::transmittance(n),
-            alpha_sum_tolerance(n, alpha_sum),
-            0.0,
-            0.0,
-        ];
+        let alphas = batch.one_minus_alpha[pixel.clone()].iter();
+        let alpha_sum: f64 = alphas.map(|&v| 1.0 - f64::from(v)).sum();
+        let transmittance_tolerance = peelnet_core::tolerance::transmittance(n);
+        // Σα summed in 32 bits in any order, against a 64-bit sum over the stored 1 − α: n − 1 additions err by at most one unit
+        // roundoff of the sum each, and n times α is recovered from a rounded 1 − α, at most one unit roundoff of 1.
+        let alpha_tolerance = n as f64 * peelnet_core::tolerance::UNIT_ROUNDOFF * (alpha_sum + 1.0);
         let mut transmittance = 1.0f64;
         for (rank, i) in pixel.clone().enumerate() {
             let place = (file, first_row + i as u64);
-            let stored = [
-                f64::from(batch.transmittance[i]),
-                f64::from(batch.alpha_sum[i]),
-                f64::from(batch.fragment_count[i]),
-                f64::from(batch.layer[i]),
-            ];
-            let computed = [transmittance, alpha_sum, n as f64, rank as f64];
+            let [t, sum] = [batch.transmittance[i], batch.alpha_sum[i]].map(f64::from);
+            let [count, layer] = [batch.fragment_count[i], batch.layer[i]].map(f64::from);
             if !lossy {
-                for (check, (found, expected)) in stored.into_iter().zip(computed).enumerate() {
-                    self.check(check, place, found, expected, tolerances[check]);
-                }
+                self.check(0, place, t, transmittance, transmittance_tolerance);
+                self.check(1, place, sum, alpha_sum, alpha_tolerance);
+                self.check(2, place, count, n as f64, 0.0);
+                self.check(3, place, layer, rank as f64, 0.0);
             }
             if rank > 0 {
                 let before = f64::from(batch.linear_depth[i - 1]);
                 let depth = f64::from(batch.linear_depth[i]);
-                self.check(DEPTH, place, depth, depth.max(before), 0.0);
+                self.check(4, place, depth, depth.max(before), 0.0);
             }
             transmittance *= f64::from(batch.one_minus_alpha[i]);
         }
     }
 
+    /// Compares a row's value with what the others say, for the check of this number.
     fn check(
         &mut self,
         check: usize,
@@ -292,11 +283,4 @@ impl Summary {
             }
         }
     }
-}
-
-/// Tolerance of Σα summed in 32 bits in any order, against a 64-bit sum over the stored 1 − α: n − 1 additions err
-/// by at most one unit roundoff of the sum each, and n times α is recovered from a rounded 1 − α, at most one unit
-/// roundoff of 1.
-fn alpha_sum_tolerance(n: usize, sum: f64) -> f64 {
-    n as f64 * peelnet_core::tolerance::UNIT_ROUNDOFF * (sum + 1.0)
 }

@@ -2,18 +2,19 @@
 //! writer that finishes the last part seals the dataset.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, RwLockReadGuard};
+
+use rayon::prelude::*;
 
 use crate::column::{Column, FragmentBatch};
 use crate::error::DatasetError;
-use crate::folder::{self, MadeFolders, Partial};
-use crate::formats::{PartSink, hash_file, in_parallel};
-use crate::manifest::{FileEntry, Manifest, Part};
+use crate::folder::{self, Partial};
+use crate::formats::{PartSink, hash_file};
+use crate::manifest::{FileEntry, Manifest, Part, to_json};
 use crate::parts::{self, PartRecord};
 use crate::plan::{Header, Plan};
-use crate::store::{FRAGMENTS, Folder, META, PLAN, Store, store_at};
+use crate::store::{FRAGMENTS, Folder, PLAN, Store, store_at};
 
 /// Writes a dataset, or some parts of it.
 ///
@@ -31,13 +32,10 @@ pub struct DatasetWriter {
     replaces: bool,
     /// Work items that were finished when this writer began.
     done: BTreeSet<u32>,
-    threads: usize,
     /// Parts that this writer finished.
     parts: Mutex<Vec<Part>>,
     /// Where parts are written before they are the dataset's.
     scratch: Partial,
-    /// Dropped last.
-    _made: Option<MadeFolders>,
 }
 
 impl DatasetWriter {
@@ -52,20 +50,14 @@ impl DatasetWriter {
         header.check(path)?;
         let mut store = store_at(path)?;
         let joins = header.resume || header.shard.is_some();
-        let (mut replaces, mut made) = (false, None);
+        let mut replaces = false;
         let scratch = match store.folder().map(Path::to_owned) {
             Some(path) => {
-                made = Some(MadeFolders::create(&path)?);
                 replaces = folder::prepare(&path, joins)?;
-                let meta = path.join(META);
-                std::fs::create_dir_all(&meta)
-                    .map_err(DatasetError::io(&meta, "create the folder"))?;
-                let scratch = Partial::create(&meta)?;
-                store = Arc::new(Folder {
-                    path,
-                    scratch: Some(scratch.path.clone()),
-                });
-                scratch
+                let partial = Partial::in_dataset(&path)?;
+                let scratch = Some(partial.path.clone());
+                store = Arc::new(Folder { path, scratch });
+                partial
             }
             None => {
                 let mut names = store.list("")?.into_keys();
@@ -74,7 +66,7 @@ impl DatasetWriter {
                     let reason = "a dataset is there already, and one in an object store is not replaced; complete it with `--resume`, or choose another prefix";
                     return Err(DatasetError::invalid(path, reason));
                 }
-                Partial::create(&std::env::temp_dir())?
+                Partial::temporary()?
             }
         };
         let mine = Plan::new(&header);
@@ -93,17 +85,9 @@ impl DatasetWriter {
             plan_is_new,
             replaces,
             done,
-            threads: std::thread::available_parallelism().map_or(1, NonZeroUsize::get),
             parts: Mutex::new(Vec::new()),
             scratch,
-            _made: made,
         })
-    }
-
-    /// Sets the number of threads that encode one part; the bytes are the same with any.
-    pub fn with_threads(mut self, threads: usize) -> Self {
-        self.threads = threads.max(1);
-        self
     }
 
     /// Whether a work item is for this writer to do: it is of its shard, and was not finished when the writer began.
@@ -117,27 +101,21 @@ impl DatasetWriter {
     /// If the work item is not this dataset's (or shard's), was begun before, or its files cannot be created.
     pub fn begin(&self, part: Part) -> Result<PartWriter<'_>, DatasetError> {
         let (index, header) = (part.index, &self.header);
-        let usage = |reason: &str| {
-            let reason = format!("work item {index}{reason}");
-            Err(DatasetError::invalid(self.store.path(), reason))
+        let is_mine = header.shard.is_none_or(|s| s.contains(index));
+        let is_new = self.parts().iter().all(|p| p.index != index);
+        let scene = header.scenes.get(part.scene as usize);
+        let Some(scene) = scene.filter(|_| index < header.work_items && is_mine && is_new) else {
+            let reason = format!(
+                "work item {index} of {} (scene {}) is not one of this writer's, or was written before",
+                header.work_items, part.scene
+            );
+            return Err(DatasetError::invalid(self.store.path(), reason));
         };
-        let Some(scene) = header.scenes.get(part.scene as usize) else {
-            return usage(&format!(": scene {} is not listed", part.scene));
-        };
-        if index >= header.work_items {
-            return usage(&format!(" of {}", header.work_items));
-        }
-        if let Some(shard) = header.shard.filter(|s| !s.contains(index)) {
-            return usage(&format!(" does not belong to shard {shard}"));
-        }
-        if self.parts().iter().any(|p| p.index == index) {
-            return usage(" was written before");
-        }
         let stem = part.stem(&scene.name);
         let names = header.format.file_names(&stem);
         let files = names.iter().map(|name| self.scratch.path.join(name));
         // A second part of the same work item fails here, because its files exist.
-        let sink = header.format.sink(files.collect(), self.threads)?;
+        let sink = header.format.sink(files.collect())?;
         Ok(PartWriter {
             name: PathBuf::from(&stem),
             dataset: self,
@@ -155,8 +133,14 @@ impl DatasetWriter {
     /// Makes a part the dataset's: its files first, then its record.
     fn commit(&self, part: &Part) -> Result<(), DatasetError> {
         let store = &*self.store;
-        let record = PartRecord::new(&self.plan, &self.header.worker, part.clone());
-        let recorded = || PartRecord::read(store, part.index, Some(&self.plan));
+        let (index, worker) = (part.index, &self.header.worker);
+        let record = PartRecord {
+            schema: self.plan.schema,
+            plan: self.plan.hash.clone(),
+            worker: worker.clone(),
+            part: part.clone(),
+        };
+        let recorded = || PartRecord::read(store, index, Some(&self.plan));
         if let Some(there) = recorded()? {
             record.check_same(store, &there)?;
         }
@@ -168,22 +152,22 @@ impl DatasetWriter {
                 continue;
             }
             // The one whose file it is may have come to its end meanwhile.
-            return Err(match recorded()? {
-                Some(there) => {
-                    record.check_same(store, &there)?;
-                    let reason = "was changed after it was written";
-                    parts::damaged(store, part.index, &file.name, reason)
-                }
-                None => DatasetError::invalid(
-                    &store.shown(&file.name),
-                    format!(
-                        "part {}: worker {} computed other bytes than this file has, and no record says whose it is; if no other extraction is running, remove the file and resume",
-                        part.index, self.header.worker
-                    ),
-                ),
-            });
+            if let Some(there) = recorded()? {
+                record.check_same(store, &there)?;
+                let reason = "was changed after it was written";
+                return Err(parts::damaged(store, index, &file.name, reason));
+            }
+            let reason = format!(
+                "part {index}: worker {worker} computed other bytes than this file has, and no record says whose it is; if no other extraction is running, remove the file and resume"
+            );
+            return Err(DatasetError::invalid(&store.shown(&file.name), reason));
         }
-        record.commit(store, &self.plan)?;
+        let name = PartRecord::name(index);
+        if !store.put_if_absent(&name, to_json(&record).as_bytes())? {
+            // Gone again where somebody removes records while this works.
+            let there = recorded()?.ok_or_else(|| DatasetError::busy(store.path()))?;
+            record.check_same(store, &there)?;
+        }
         for file in &part.files {
             // It is linked, moved or sent: what stays here goes with the folder.
             let _ = std::fs::remove_file(self.scratch.path.join(&file.name));
@@ -192,9 +176,8 @@ impl DatasetWriter {
     }
 
     /// While it lives, a process that ends waits; but not for a network.
-    fn moving(&self) -> Option<peelnet_files::Moving> {
-        let folder = self.store.folder();
-        folder.map(|_| peelnet_files::Moving::begin())
+    fn moving(&self) -> Option<RwLockReadGuard<'static, ()>> {
+        self.store.folder().map(|_| peelnet_files::moving())
     }
 
     /// Ends this writer. Where every part of the dataset is finished now, the dataset is sealed, and its manifest is returned; otherwise a
@@ -299,7 +282,7 @@ impl PartWriter<'_> {
     pub fn finish(self, lost_fragments: u64, coplanar_ties: u64) -> Result<(), DatasetError> {
         self.sink.finish(self.part.rows)?;
         let dataset = self.dataset;
-        let hashed = in_parallel(dataset.threads, self.names, |name| {
+        let hashed = self.names.into_par_iter().map(|name| {
             let path = dataset.scratch.path.join(&name);
             let (bytes, sha256) = hash_file(&path).map_err(DatasetError::io(&path, "read"))?;
             Ok(FileEntry {
@@ -312,7 +295,7 @@ impl PartWriter<'_> {
             lost_fragments,
             coplanar_ties,
             row_groups: dataset.header.format.row_groups(self.part.rows),
-            files: hashed.into_iter().collect::<Result<_, DatasetError>>()?,
+            files: hashed.collect::<Result<_, DatasetError>>()?,
             ..self.part
         };
         if !dataset.replaces {

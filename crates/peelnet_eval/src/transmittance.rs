@@ -54,7 +54,7 @@ impl<'a> Peeled<'a> {
         mut take: impl FnMut(usize, Vec<Fragment>),
     ) -> Result<(), EvalError> {
         self.harvester.keep_triangles(true);
-        let mut tile = |tile: RawTile| {
+        let tile = |tile: &mut RawTile| {
             for (run, pixel) in tile.offsets.windows(2).zip(tile.first_pixel..) {
                 let run = run[0] as usize..run[1] as usize;
                 let fragment = |i: usize| {
@@ -71,7 +71,7 @@ impl<'a> Peeled<'a> {
             Ok(())
         };
         self.harvester
-            .harvest(camera, sample, None, RawTile::default, &mut tile)
+            .harvest(camera, sample, None, tile)
             .map(|_| ())
             .map_err(EvalError::at(format!("scene '{}'", self.scene.name)))
     }

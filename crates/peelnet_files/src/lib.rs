@@ -1,6 +1,7 @@
 //! Files and foreign text: outputs appear whole or not at all ([`write_whole`]; datasets, which are folders, have their own
 //! way) and replace only their own kind ([`Kind`]); inputs are regular files of bounded size ([`read`], [`open`]); names from files and
 //! arguments are shown without what they could do to a terminal or a shader ([`printable`]).
+#![allow(missing_docs, reason = "users of the facade do not see it")]
 
 mod input;
 mod output;
@@ -8,8 +9,8 @@ mod text;
 
 pub use input::{check_size, open, read, read_head};
 pub use output::{
-    Kind, Moving, Output, Outputs, Refused, STDOUT, Standing, Unfinished, check_is_folder,
-    folder_of, is_remote, remove_unfinished, write_whole,
+    Kind, Outputs, Refused, STDOUT, Unfinished, check_file, check_is_folder, folder_of, is_remote,
+    moving, remove_unfinished, temporary, write_whole,
 };
 pub use text::{
     MAX_SHOWN, counted, error_line, hex, one_line, printable, printable_json, printable_lines,

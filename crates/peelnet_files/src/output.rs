@@ -1,20 +1,19 @@
 //! Files that are written: whole or not at all, and never over what is not peelnet's. The one place with this rule.
 //!
-//! A path is resolved first, and must lead to a regular file or to a free name ([`Output::reserve`]). A command checks its outputs before it
-//! begins ([`Outputs`]): an input is not replaced, nor a file of another kind, unless the user forces it. What was allowed then still holds
-//! just before the rename, or nothing is replaced ([`Output::commit`]).
+//! A path is resolved first, and must lead to a regular file or to a free name. A command checks its outputs before it begins
+//! ([`Outputs`]): an input is not replaced, nor a file of another kind, unless the user forces it. What was allowed then still holds just
+//! before the rename, or nothing is replaced ([`write_whole`]).
 
 use crate::{read_head, shown};
 use std::{
     collections::{BTreeMap, BTreeSet},
-    error::Error,
-    fmt,
     fs::{self, Metadata},
     io::{self, Write as _},
     path::{Component, Path, PathBuf, absolute},
     sync::{Mutex, MutexGuard, PoisonError, RwLock, RwLockReadGuard},
     time::SystemTime,
 };
+use tempfile::NamedTempFile;
 
 /// The path that means stdout.
 pub const STDOUT: &str = "-";
@@ -126,7 +125,7 @@ fn file_id(_: &Metadata) -> Option<(u64, u64)> {
 
 /// A file that is going to be written, and what may be replaced there.
 #[derive(Clone, Debug)]
-pub struct Output {
+struct Output {
     /// Absolute, and otherwise as the user gave it.
     path: PathBuf,
     /// Where it leads; nothing for stdout.
@@ -135,15 +134,8 @@ pub struct Output {
 }
 
 impl Output {
-    /// Finds where a path leads and what stands there. A file that a command's [`Outputs`] allowed to replace is the one that they saw.
-    ///
-    /// # Errors
-    /// A folder, a link, a device, a pipe, an address of another machine, or a path that cannot be looked at.
-    pub fn reserve(path: &Path) -> io::Result<Self> {
-        let output = Self::look(path)?;
-        Ok(output.allowed().unwrap_or(output))
-    }
-
+    /// Finds where a path leads and what stands there. A folder, a link, a device, a pipe, an address of another machine, or a path that
+    /// cannot be looked at is an error.
     fn look(path: &Path) -> io::Result<Self> {
         if path == Path::new(STDOUT) {
             return Ok(Self {
@@ -174,61 +166,77 @@ impl Output {
         };
         allowed.get(&self.path).cloned().or_else(of_folder)
     }
+}
 
-    /// Writes a temporary file beside the output, then renames it. A missing folder is created; a file that is replaced keeps its
-    /// permissions.
-    ///
-    /// # Errors
-    /// If the folder or the file cannot be written, or if another file stands there than when it was reserved; then nothing is left behind.
-    pub fn commit(&self, bytes: &[u8]) -> io::Result<()> {
-        let Some(file) = &self.file else {
-            return to_stdout(bytes);
-        };
-        let folder = folder_of(file);
-        fs::create_dir_all(folder)?;
-        let mut builder = tempfile::Builder::new();
-        // Temporary files are private by default; a result has the permissions of any new file.
-        #[cfg(unix)]
-        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-        let (mut unnamed, _unfinished) = {
-            // A process that ends between the two would leave the file behind.
-            let _moving = Moving::begin();
-            let unnamed = builder
-                .prefix(".peelnet-")
-                .tempfile_in(folder)
-                .map_err(plain)?;
-            let unfinished = Unfinished::new(unnamed.path());
-            (unnamed, unfinished)
-        };
-        // The error of a temporary file has its name.
-        unnamed.as_file_mut().write_all(bytes)?;
-        if self.existing.is_some()
-            && let Ok(replaced) = fs::metadata(file)
-        {
-            unnamed.as_file().set_permissions(replaced.permissions())?;
-        }
-        // A power failure must not leave a name without contents.
-        unnamed.as_file().sync_all()?;
-        let _moving = Moving::begin();
-        let now = Self::look(&self.path)?;
-        let is_allowed = now.existing.is_none() || now.existing == self.existing;
-        if !is_allowed || now.file != self.file {
-            return Err(changed());
-        }
-        match now.existing {
-            Some(_) => unnamed.persist(file).map_err(|e| e.error)?,
-            None => match unnamed.persist_noclobber(file) {
-                Err(e) if e.error.kind() == io::ErrorKind::AlreadyExists => return Err(changed()),
-                // File systems that cannot do this in one step.
-                Err(e) => e.file.persist(file).map_err(|e| e.error)?,
-                Ok(file) => file,
-            },
-        };
-        if self.allowed().is_some() {
-            lock(&ALLOWED).insert(self.path.clone(), Self::look(&self.path)?);
-        }
-        Ok(())
+/// Writes a file whole: a temporary file beside it, which is then renamed. A missing folder is created; a file that is replaced keeps its
+/// permissions, and is the one that a command's [`Outputs`] allowed to replace, or that was there when this was called.
+///
+/// # Errors
+/// A folder, a link, a device, a pipe, an address of another machine, or a path that cannot be looked at or written; a file that came or
+/// changed meanwhile. Then nothing is left behind.
+pub fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    let found = Output::look(path)?;
+    let allowed = found.allowed();
+    let is_allowed = allowed.is_some();
+    let expected = allowed.unwrap_or(found);
+    let Some(file) = &expected.file else {
+        return to_stdout(bytes);
+    };
+    let folder = folder_of(file);
+    fs::create_dir_all(folder)?;
+    let (mut unnamed, _unfinished) = temporary(folder, ".peelnet-")?;
+    // The error of a temporary file has its name.
+    unnamed.as_file_mut().write_all(bytes)?;
+    if expected.existing.is_some()
+        && let Ok(replaced) = fs::metadata(file)
+    {
+        unnamed.as_file().set_permissions(replaced.permissions())?;
     }
+    // A power failure must not leave a name without contents.
+    unnamed.as_file().sync_all()?;
+    let _moving = moving();
+    let now = Output::look(&expected.path)?;
+    let is_same = now.existing.is_none() || now.existing == expected.existing;
+    if !is_same || now.file != expected.file {
+        return Err(changed());
+    }
+    match now.existing {
+        Some(_) => unnamed.persist(file).map_err(|e| e.error)?,
+        None => match unnamed.persist_noclobber(file) {
+            Err(e) if e.error.kind() == io::ErrorKind::AlreadyExists => return Err(changed()),
+            // File systems that cannot do this in one step.
+            Err(e) => e.file.persist(file).map_err(|e| e.error)?,
+            Ok(file) => file,
+        },
+    };
+    if is_allowed {
+        let written = Output::look(&expected.path)?;
+        lock(&ALLOWED).insert(written.path.clone(), written);
+    }
+    Ok(())
+}
+
+/// Refuses a path that [`write_whole`] refuses: a folder, a link, a device, a pipe, an address of another machine.
+///
+/// # Errors
+/// See above, and a path that cannot be looked at.
+pub fn check_file(path: &Path) -> io::Result<()> {
+    Output::look(path).map(drop)
+}
+
+/// An unfinished file in a folder. Temporary files are private by default; this one has the permissions of any new file.
+///
+/// # Errors
+/// If the folder cannot be written.
+pub fn temporary(folder: &Path, prefix: &str) -> io::Result<(NamedTempFile, Unfinished)> {
+    let mut builder = tempfile::Builder::new();
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    // A process that ends between the two would leave the file behind.
+    let _moving = moving();
+    let file = builder.prefix(prefix).tempfile_in(folder).map_err(plain)?;
+    let unfinished = Unfinished::new(file.path());
+    Ok((file, unfinished))
 }
 
 fn changed() -> io::Error {
@@ -245,14 +253,6 @@ fn to_stdout(bytes: &[u8]) -> io::Result<()> {
         Err(e) if e.kind() == io::ErrorKind::BrokenPipe => Ok(()),
         other => other,
     }
-}
-
-/// Writes a file whole: [`Output::reserve`] and [`Output::commit`].
-///
-/// # Errors
-/// As these two.
-pub fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    Output::reserve(path)?.commit(bytes)
 }
 
 /// What the [`Outputs`] of this process found where their files go, by path.
@@ -295,41 +295,28 @@ pub struct Kind {
     pub is: fn(head: &[u8]) -> bool,
 }
 
-/// The existing file at an output's path.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Standing {
-    /// None, an empty one, or stdout.
-    Free,
-    /// A file of the kind, which is replaced.
-    Replaced,
-    /// Another file, which is not peelnet's to replace.
-    Foreign,
-}
-
 impl Kind {
-    /// What lies at a path.
+    /// Whether another file than one of this kind lies at a path, which is not peelnet's to replace.
     ///
     /// # Errors
-    /// As [`Output::reserve`], or a file that cannot be read.
-    pub fn standing(&self, path: &Path) -> io::Result<Standing> {
-        self.standing_of(&Output::look(path)?)
+    /// As [`write_whole`], or a file that cannot be read.
+    pub fn is_foreign(&self, path: &Path) -> io::Result<bool> {
+        Ok(self.is_ours(&Output::look(path)?)? == Some(false))
     }
 
-    fn standing_of(&self, output: &Output) -> io::Result<Standing> {
+    /// Whether the file that an output replaces is of this kind; `None` where it replaces none, an empty one, or stdout.
+    fn is_ours(&self, output: &Output) -> io::Result<Option<bool>> {
         let (Some(file), Some(_)) = (&output.file, &output.existing) else {
-            return Ok(Standing::Free);
+            return Ok(None);
         };
         let head = read_head(file, HEAD)?;
-        Ok(match (self.is)(&head) {
-            _ if head.is_empty() => Standing::Free,
-            true => Standing::Replaced,
-            false => Standing::Foreign,
-        })
+        Ok((!head.is_empty()).then(|| (self.is)(&head)))
     }
 }
 
 /// An output that may not be written.
-#[derive(Debug)]
+#[derive(Debug, thiserror::Error)]
+#[error("{text}")]
 pub struct Refused {
     /// Whether another name would do: the place as such can be written.
     pub is_wrong_value: bool,
@@ -337,9 +324,9 @@ pub struct Refused {
 }
 
 impl Refused {
-    fn wrong(text: impl Into<String>) -> Self {
+    fn new(is_wrong_value: bool, text: impl Into<String>) -> Self {
         Self {
-            is_wrong_value: true,
+            is_wrong_value,
             text: text.into(),
         }
     }
@@ -354,20 +341,9 @@ impl Refused {
 
 impl From<io::Error> for Refused {
     fn from(error: io::Error) -> Self {
-        Self {
-            is_wrong_value: false,
-            text: format!("cannot be written: {error}"),
-        }
+        Self::new(false, format!("cannot be written: {error}"))
     }
 }
-
-impl fmt::Display for Refused {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.text)
-    }
-}
-
-impl Error for Refused {}
 
 /// What a command is going to write, checked file by file before it begins.
 #[derive(Debug)]
@@ -418,27 +394,24 @@ impl Outputs {
         }
         if self.taken.iter().any(|taken| taken.file == output.file) {
             let why = "another output of this command has the same name; choose another";
-            return Err(Refused::wrong(why));
+            return Err(Refused::new(true, why));
         }
         if self.is_input(&output) && !is_forced {
-            return Err(Refused::wrong(format!(
+            let why = format!(
                 "this command reads that file; choose another name, or replace it with {force}"
-            )));
+            );
+            return Err(Refused::new(true, why));
         }
-        match kind.standing_of(&output)? {
-            Standing::Free => {}
-            Standing::Foreign if !is_forced => {
-                let text = format!(
+        if let Some(is_ours) = kind.is_ours(&output)? {
+            if !is_ours && !is_forced {
+                let why = format!(
                     "the file there is not {}; choose another name, or replace it with {force}",
                     kind.name
                 );
-                return Err(Refused {
-                    is_wrong_value: false,
-                    text,
-                });
+                return Err(Refused::new(false, why));
             }
-            Standing::Foreign => self.replaced.push((path.to_owned(), "another file")),
-            Standing::Replaced => self.replaced.push((path.to_owned(), kind.name)),
+            let what = if is_ours { kind.name } else { "another file" };
+            self.replaced.push((path.to_owned(), what));
         }
         self.take(output);
         Ok(())
@@ -472,17 +445,14 @@ impl Outputs {
         ending: &str,
         kind: Kind,
     ) -> Result<(), Refused> {
-        check_is_folder(setting, folder)?;
         let entries = fs::read_dir(folder).into_iter().flatten().flatten();
-        let mut names: Vec<PathBuf> = entries.map(|e| e.path()).collect();
-        names.retain(|path| {
-            path.extension()
+        let mut names: Vec<PathBuf> = entries.map(|e| e.file_name().into()).collect();
+        names.retain(|name| {
+            name.extension()
                 .is_some_and(|e| e.eq_ignore_ascii_case(ending))
         });
         names.sort();
-        for path in &names {
-            self.file(setting, path, kind)?;
-        }
+        self.folder(setting, folder, names.iter().map(|name| (name, kind)))?;
         let found = || {
             let path = absolute(local(folder)?)?;
             Ok(Output {
@@ -518,10 +488,11 @@ impl Outputs {
         let (force, is_forced) = self.force;
         let input = self.taken.iter().find(|output| self.is_input(output));
         if let Some(output) = input.filter(|_| !is_forced) {
-            return Err(Refused::wrong(format!(
+            let why = format!(
                 "--out: would replace {}, which a scene of this command reads; choose another name, or replace it with {force}",
                 shown(&output.path)
-            )));
+            );
+            return Err(Refused::new(true, why));
         }
         let Some((first, what)) = self.replaced.first() else {
             return Ok(None);
@@ -558,12 +529,9 @@ impl Drop for Outputs {
 pub fn check_is_folder(setting: &str, folder: &Path) -> Result<(), Refused> {
     let refused = if folder == Path::new(STDOUT) {
         let why = "a folder is written, which stdout cannot hold; name a folder";
-        Err(Refused::wrong(why))
+        Err(Refused::new(true, why))
     } else if folder.exists() && !folder.is_dir() {
-        Err(Refused {
-            is_wrong_value: false,
-            text: "is a file; name a folder".to_owned(),
-        })
+        Err(Refused::new(false, "is a file; name a folder"))
     } else {
         check_folder(folder).map_err(Refused::from)
     };
@@ -599,19 +567,9 @@ impl Drop for Unfinished {
     }
 }
 
-/// Moving several finished files into place: [`remove_unfinished`] waits until this is dropped.
-#[derive(Debug)]
-pub struct Moving {
-    _guard: RwLockReadGuard<'static, ()>,
-}
-
-impl Moving {
-    /// From now on a process that wants to end waits.
-    pub fn begin() -> Self {
-        Self {
-            _guard: MOVING.read().unwrap_or_else(PoisonError::into_inner),
-        }
-    }
+/// Finished files move into place: until this is dropped, a process that wants to end waits.
+pub fn moving() -> RwLockReadGuard<'static, ()> {
+    MOVING.read().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// Waits for files that move into place, removes every file and folder that is unfinished, and lets no other move: for a process that ends
@@ -641,22 +599,18 @@ mod tests {
 
     /// What a file or a link holds, by path, and its permissions.
     fn everything(folder: &Path) -> BTreeMap<PathBuf, (String, bool)> {
-        let entries = fs::read_dir(folder).expect("lists");
-        let paths = entries.map(|entry| entry.expect("an entry").path());
         let mut found = BTreeMap::new();
-        for path in paths {
+        for entry in fs::read_dir(folder).expect("lists") {
+            let path = entry.expect("an entry").path();
             let metadata = fs::symlink_metadata(&path).expect("stands");
-            let text = if metadata.is_symlink() {
-                let target = fs::read_link(&path).expect("a link");
-                target.to_string_lossy().into_owned()
+            let mut text = String::new();
+            if metadata.is_symlink() {
+                text = format!("{:?}", fs::read_link(&path).expect("a link"));
             } else if metadata.is_file() {
-                fs::read_to_string(&path).expect("reads")
-            } else {
-                if metadata.is_dir() {
-                    found.extend(everything(&path));
-                }
-                String::new()
-            };
+                text = fs::read_to_string(&path).expect("reads");
+            } else if metadata.is_dir() {
+                found.extend(everything(&path));
+            }
             found.insert(path, (text, metadata.permissions().readonly()));
         }
         found
@@ -825,27 +779,5 @@ mod tests {
         for folder in ["new", "new/er", "./new", "../new"] {
             check_is_folder("--out", Path::new(folder)).expect("can be created");
         }
-    }
-
-    #[test]
-    fn what_is_forced_is_said() {
-        let dir = tempfile::tempdir().expect("temporary folder");
-        let at = |name: &str| dir.path().join(name);
-        for (name, text) in [("a", "note"), ("b", "mine")] {
-            fs::write(at(name), text).expect("writes");
-        }
-        let mut outputs = Outputs::new(("--force", true), [at("a")]);
-        for name in ["a", "b"] {
-            outputs.file("--out", &at(name), NOTE).expect("is forced");
-        }
-        let twice = outputs.file("--out", &at("b"), NOTE).expect_err("twice");
-        assert!(twice.to_string().contains("another output"), "{twice}");
-        outputs
-            .file("--out", Path::new(STDOUT), NOTE)
-            .expect("is stdout");
-        assert!(outputs.is_stdout_taken());
-        let said = outputs.begin([]).expect("is forced").unwrap_or_default();
-        assert!(said.ends_with("a (a note) and one more file"), "{said}");
-        write_whole(&at("b"), b"note").expect("is forced");
     }
 }

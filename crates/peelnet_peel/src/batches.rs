@@ -2,7 +2,8 @@
 
 use crate::{
     ExtractOptions, PeelError,
-    extract::{Event, Outbox, peel, stream, work},
+    extract::{Outbox, peel, stream},
+    items::items,
 };
 use peelnet_dataset::FragmentBatch;
 use peelnet_gpu::Gpu;
@@ -15,7 +16,7 @@ use std::{
 /// The rows of some scenes, batch by batch, while other threads peel. Dropping it ends the peeling.
 #[derive(Debug)]
 pub struct Batches {
-    /// `None` once nobody asks any more.
+    /// `None` once this is dropped.
     rows: Option<Receiver<Result<FragmentBatch, PeelError>>>,
     peeling: Option<JoinHandle<()>>,
 }
@@ -41,19 +42,22 @@ pub fn batches(
     scenes: &[Scene],
     options: &ExtractOptions,
 ) -> Result<Batches, PeelError> {
-    let (_, mine) = work(scenes, options)?;
+    let mut mine = items(scenes, options)?;
+    mine.retain(|part| options.shard.is_none_or(|s| s.contains(part.index)));
     let (gpu, scenes, options) = (gpu.clone(), scenes.to_vec(), options.clone());
     let (send, rows) = sync_channel(1);
     let peeling = std::thread::spawn(move || {
-        let make = |outbox: &Outbox| peel(&gpu, &scenes, &options, &mine, outbox);
-        let received = stream(make, |event| match event {
-            Event::Rows(rows) => {
-                let sent = send.send(Ok(rows.clone()));
-                sent.map_err(|_| PeelError::Interrupted)
+        let make = |outbox: &Outbox| peel(&gpu, &scenes, &options, mine, outbox);
+        let peeled = stream(make, |mut feed| {
+            while let Some(part) = feed.part() {
+                feed.rows(&part, |rows| {
+                    let sent = send.send(Ok(rows.clone()));
+                    sent.map_err(|_| PeelError::Interrupted)
+                })?;
             }
-            Event::Begin(_) | Event::End(..) => Ok(()),
+            Ok(())
         });
-        if let Err(error) = received {
+        if let Err(error) = peeled {
             // Nobody may ask any more.
             let _ = send.send(Err(error));
         }
@@ -64,21 +68,13 @@ pub fn batches(
     })
 }
 
-impl Batches {
-    /// Ends the peeling, which finds nobody to send to.
-    fn end(&mut self) -> std::thread::Result<()> {
-        self.rows = None;
-        self.peeling.take().map_or(Ok(()), JoinHandle::join)
-    }
-}
-
 impl Iterator for Batches {
     type Item = Result<FragmentBatch, PeelError>;
 
     fn next(&mut self) -> Option<Self::Item> {
         let next = self.rows.as_ref()?.recv().ok();
         if next.is_none()
-            && let Err(panic) = self.end()
+            && let Some(Err(panic)) = self.peeling.take().map(JoinHandle::join)
         {
             std::panic::resume_unwind(panic);
         }
@@ -88,7 +84,8 @@ impl Iterator for Batches {
 
 impl Drop for Batches {
     fn drop(&mut self) {
-        // Whatever it came to, nobody asks any more.
-        let _ = self.end();
+        // The peeling finds nobody to send to, and ends.
+        self.rows = None;
+        let _ = self.peeling.take().map(JoinHandle::join);
     }
 }

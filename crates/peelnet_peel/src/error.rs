@@ -1,5 +1,3 @@
-use std::path::PathBuf;
-
 /// What can go wrong while peeling.
 #[derive(Debug, thiserror::Error)]
 #[allow(missing_docs, reason = "the messages say what the fields are")]
@@ -16,19 +14,11 @@ pub enum PeelError {
     Gpu(#[from] peelnet_gpu::GpuError),
     #[error("{0}")]
     Dataset(#[from] peelnet_dataset::DatasetError),
-    #[error("no scene to extract")]
-    NoScene,
-    #[error("two scenes are named '{name}' ({} and {}): rename one, because rows name their scene", first.display(), second.display())]
-    SameName {
-        name: String,
-        first: PathBuf,
-        second: PathBuf,
-    },
-    #[error("scene {} has {views} of the {asked} views that were asked for: ask for fewer, or add [orbit] or [[view]]", scene.display())]
-    TooFewViews {
-        scene: PathBuf,
-        views: u32,
-        asked: u32,
+    /// A wrong value of what is asked for: `scenes`, `views`, `augment`, `pixels` or `lists`.
+    #[error("{reason}")]
+    Setting {
+        setting: &'static str,
+        reason: String,
     },
     /// The check of rows that came from the GPU.
     #[error(
@@ -36,10 +26,6 @@ pub enum PeelError {
          with what `peelnet doctor` prints"
     )]
     Unsorted(u64),
-    #[error("{0} is not a fraction of the pixels: it must be above 0 and at most 1")]
-    Fraction(f64),
-    #[error("{0} synthetic lists are too many: at most {most}", most = crate::synthetic::MAX_LISTS)]
-    TooManyLists(u64),
     /// A part of a shard: which one, and whose.
     #[error("part {index} (scene '{scene}', view {view}) of worker {worker}: {source}")]
     Part {
@@ -51,6 +37,13 @@ pub enum PeelError {
     },
     #[error("interrupted: parts that were not finished are gone; run the command again")]
     Interrupted,
+}
+
+impl PeelError {
+    pub(crate) fn setting(setting: &'static str, reason: impl Into<String>) -> Self {
+        let reason = reason.into();
+        Self::Setting { setting, reason }
+    }
 }
 
 impl From<peelnet_shaders::ShaderError> for PeelError {

@@ -3,29 +3,29 @@
 use crate::{
     PeelError,
     harvest::{Harvest, Harvester, Peel},
-    items::{Item, Views, items},
-    rows::{RawTile, RowCounts, ViewConstants, append_rows},
+    items::{camera_info, items},
+    rows::{RawTile, RowCounts, make_rows},
 };
 use peelnet_dataset::{
-    CameraInfo, DatasetWriter, Format, FragmentBatch, Header, Manifest, Part, SceneEntry, Shard,
-    worker_name,
+    DatasetWriter, Format, FragmentBatch, Header, Manifest, Part, SceneEntry, Shard, worker_name,
 };
 use peelnet_files::thousands;
 use peelnet_gpu::Gpu;
 use peelnet_raster::PixelSample;
-use peelnet_scene::{Camera, Census, Scene};
+use peelnet_scene::{Census, Scene};
 use std::{
     collections::BTreeMap,
+    mem,
     path::{Path, PathBuf},
     sync::{
         atomic::{AtomicBool, Ordering},
-        mpsc::{Receiver, SyncSender, channel, sync_channel},
+        mpsc::{Receiver, Sender, SyncSender, channel, sync_channel},
     },
     time::Instant,
 };
 
-/// Fragments of one tile by default: 100 MB of GPU storage and as much for the copy of it.
-const DEFAULT_BUDGET: u64 = 4 << 20;
+/// Fragments of one tile: 100 MB of GPU storage and as much for the copy of it.
+const BUDGET: u64 = 4 << 20;
 
 /// Rows handed to the writer at a time.
 const ROWS_AT_A_TIME: usize = 1 << 18;
@@ -37,8 +37,8 @@ pub struct ExtractOptions {
     pub out: PathBuf,
     /// Frame width and height in pixels.
     pub size: [u32; 2],
-    /// Views of each scene.
-    pub views: Views,
+    /// The first n views of each scene, which must have so many; `None` takes all.
+    pub views: Option<u32>,
     /// File format.
     pub format: Format,
     /// How fragments are found.
@@ -57,8 +57,6 @@ pub struct ExtractOptions {
     pub resume: bool,
     /// The command line, for the manifest.
     pub command: String,
-    /// Fragments of one tile; memory grows with it.
-    pub budget: Option<u64>,
 }
 
 impl ExtractOptions {
@@ -67,7 +65,7 @@ impl ExtractOptions {
         Self {
             out: out.into(),
             size: [1024, 768],
-            views: Views::All,
+            views: None,
             format: Format::Parquet,
             peel: Peel::SBuffer,
             max_passes: None,
@@ -77,7 +75,6 @@ impl ExtractOptions {
             shard: None,
             resume: false,
             command: String::new(),
-            budget: None,
         }
     }
 }
@@ -125,90 +122,90 @@ pub struct ExtractReport {
     pub tiles: u64,
 }
 
-/// What the GPU's side sends, view by view.
+/// What a maker of parts sends: a part begins, its tiles follow, it ends.
 pub(crate) enum Message {
     Begin(Part),
     Tile(RawTile),
     End(Harvest),
-    /// The last one.
-    Failed(PeelError),
 }
 
-/// The GPU's end of the channels.
+/// The maker's end of the channels. Its functions fail with [`PeelError::Interrupted`] once nobody receives any more.
 pub(crate) struct Outbox {
     send: SyncSender<Message>,
     spare: Receiver<RawTile>,
 }
 
 impl Outbox {
-    /// A tile to fill, with the memory of an earlier one where there is one.
-    pub(crate) fn spare(&self) -> RawTile {
-        self.spare.try_recv().unwrap_or_default()
+    /// Sends a tile, and leaves one with the memory of an earlier one in its place.
+    pub(crate) fn tile(&self, tile: &mut RawTile) -> Result<(), PeelError> {
+        let spare = self.spare.try_recv().unwrap_or_default();
+        self.deliver(Message::Tile(mem::replace(tile, spare)))
     }
 
-    /// Sends a message; an error once nobody receives any more.
     pub(crate) fn deliver(&self, message: Message) -> Result<(), PeelError> {
         let sent = self.send.send(message);
         sent.map_err(|_| PeelError::Interrupted)
     }
 }
 
-/// What comes of a view's messages.
-pub(crate) enum Event<'a> {
-    Begin(Part),
-    Rows(&'a FragmentBatch),
-    End(Harvest, RowCounts),
+/// The receiver's end: parts, one after the other.
+pub(crate) struct Feed {
+    messages: Receiver<Message>,
+    give_back: Sender<RawTile>,
+    batch: FragmentBatch,
 }
 
-/// Makes rows of what `make` sends from another thread, view by view. Once `each` fails, `make` stops at its next message.
-pub(crate) fn stream(
-    make: impl FnOnce(&Outbox) + Send,
-    mut each: impl FnMut(Event<'_>) -> Result<(), PeelError>,
-) -> Result<(), PeelError> {
-    let (send, received) = sync_channel(1);
-    let (give_back, spare) = channel();
-    std::thread::scope(move |scope| {
-        scope.spawn(move || make(&Outbox { send, spare }));
-        let mut batch = FragmentBatch::with_capacity(ROWS_AT_A_TIME + 4096);
-        let mut current = None;
-        for message in received {
-            match (message, &mut current) {
-                (Message::Begin(part), _) => {
-                    current = Some((ViewConstants::from(&part), RowCounts::default()));
-                    each(Event::Begin(part))?;
+impl Feed {
+    /// The next part; none at the end, or once the maker failed.
+    pub(crate) fn part(&self) -> Option<Part> {
+        match self.messages.recv() {
+            Ok(Message::Begin(part)) => Some(part),
+            _ => None,
+        }
+    }
+
+    /// Hands over the rows of the part that began last.
+    pub(crate) fn rows(
+        &mut self,
+        part: &Part,
+        mut each: impl FnMut(&FragmentBatch) -> Result<(), PeelError>,
+    ) -> Result<(Harvest, RowCounts), PeelError> {
+        let (mut counts, batch) = (RowCounts::default(), &mut self.batch);
+        loop {
+            match self.messages.recv() {
+                Ok(Message::Tile(tile)) => {
+                    make_rows(&tile, part, batch, ROWS_AT_A_TIME, &mut counts, &mut each)?;
+                    // Unless the maker has ended.
+                    let _ = self.give_back.send(tile);
                 }
-                (Message::Tile(tile), Some((view, counts))) => {
-                    let rows = |rows: &FragmentBatch| each(Event::Rows(rows));
-                    *counts += append_rows(&tile, *view, &mut batch, ROWS_AT_A_TIME, rows)?;
-                    counts.check()?;
-                    // Unless the other side has ended.
-                    let _ = give_back.send(tile);
-                }
-                (Message::End(found), Some((_, counts))) => each(Event::End(found, *counts))?,
-                (Message::Failed(error), _) => return Err(error),
-                // A view begins first.
-                (Message::Tile(_) | Message::End(_), None) => {}
+                Ok(Message::End(found)) => return Ok((found, counts)),
+                // The maker failed, and says why.
+                Ok(Message::Begin(_)) | Err(_) => return Err(PeelError::Interrupted),
             }
         }
-        Ok(())
-    })
+    }
 }
 
-/// The number of all work items, and those of the options' shard.
-pub(crate) fn work(
-    scenes: &[Scene],
-    options: &ExtractOptions,
-) -> Result<(u32, Vec<Item>), PeelError> {
-    if !(options.pixels > 0.0 && options.pixels <= 1.0) {
-        return Err(PeelError::Fraction(options.pixels));
-    }
-    let all = items(scenes, options.views, options.augment)?;
-    if all.is_empty() {
-        return Err(PeelError::NoScene);
-    }
-    let (count, mut mine) = (all.len() as u32, all);
-    mine.retain(|i| options.shard.is_none_or(|s| s.contains(i.index)));
-    Ok((count, mine))
+/// Takes what `make` sends from another thread. Once `take` fails, `make` does at its next message.
+pub(crate) fn stream(
+    make: impl FnOnce(&Outbox) -> Result<(), PeelError> + Send,
+    take: impl FnOnce(Feed) -> Result<(), PeelError>,
+) -> Result<(), PeelError> {
+    let (send, messages) = sync_channel(1);
+    let (give_back, spare) = channel();
+    std::thread::scope(|scope| {
+        let making = scope.spawn(move || make(&Outbox { send, spare }));
+        let taken = take(Feed {
+            messages,
+            give_back,
+            batch: FragmentBatch::with_capacity(ROWS_AT_A_TIME + 4096),
+        });
+        let made = making.join();
+        match made.unwrap_or_else(|panic| std::panic::resume_unwind(panic)) {
+            Ok(()) | Err(PeelError::Interrupted) => taken,
+            failed => failed,
+        }
+    })
 }
 
 /// Peels the scenes and writes the dataset. Every part is the dataset's when it is finished, so that an extraction that is killed or fails
@@ -224,7 +221,7 @@ pub fn extract(
     stop: &AtomicBool,
     progress: &mut dyn FnMut(&Progress),
 ) -> Result<ExtractReport, PeelError> {
-    let (all, mine) = work(scenes, options)?;
+    let all = items(scenes, options)?;
     let header = Header {
         format: options.format,
         seed: options.seed,
@@ -235,26 +232,26 @@ pub fn extract(
         peel: options.peel.to_string(),
         pixels_fraction: options.pixels,
         augment: options.augment,
-        settings: settings(scenes, options)?,
+        settings: settings(&all, options),
         scenes: scenes.iter().map(scene_entry).collect(),
-        work_items: all,
+        work_items: all.len() as u32,
         shard: options.shard,
         resume: options.resume,
         worker: worker_name(),
     };
     write(&options.out, header, stop, progress, |missing, outbox| {
-        let missing = mine.iter().filter(|item| missing.contains(&item.index));
-        peel(gpu, scenes, options, missing, outbox);
+        let missing = missing.iter().map(|&k| all[k as usize].clone());
+        peel(gpu, scenes, options, missing, outbox)
     })
 }
 
-/// Writes the parts that a dataset lacks: `make` is called with their numbers on another thread, and sends them view by view.
+/// Writes the parts that a dataset lacks: `make` is called with their numbers on another thread, and sends them.
 pub(crate) fn write(
     out: &Path,
     header: Header,
     stop: &AtomicBool,
     progress: &mut dyn FnMut(&Progress),
-    make: impl FnOnce(&[u32], &Outbox) + Send,
+    make: impl FnOnce(&[u32], &Outbox) -> Result<(), PeelError> + Send,
 ) -> Result<ExtractReport, PeelError> {
     let start = Instant::now();
     let all = 0..header.work_items;
@@ -265,125 +262,107 @@ pub(crate) fn write(
         ..Default::default()
     };
     progress(&state);
-    let (mut total, mut gpu_micros, mut tiles) = (RowCounts::default(), 0.0, 0);
-    let mut part = None;
+    let (mut lost, mut coplanar, mut gpu_micros, mut tiles) = (0, 0, 0.0, 0);
+    let go_on = || match stop.load(Ordering::Relaxed) {
+        true => Err(PeelError::Interrupted),
+        false => Ok(()),
+    };
     let make = |outbox: &Outbox| make(&missing, outbox);
-    stream(make, |event| {
-        match event {
-            Event::Begin(info) => part = Some(writer.begin(info)?),
-            Event::Rows(rows) => part.iter_mut().try_for_each(|part| part.write(rows))?,
-            Event::End(found, counts) => {
-                let mut part = part.take().into_iter();
-                part.try_for_each(|part| part.finish(counts.lost, counts.coplanar))?;
-                total += counts;
-                gpu_micros += found.gpu_micros;
-                tiles += u64::from(found.tiles);
-                state.items_done += 1;
-                state.rows = total.rows;
-                state.seconds = start.elapsed().as_secs_f64();
-                progress(&state);
-            }
+    stream(make, |mut feed| {
+        while let Some(part) = feed.part() {
+            let mut written = writer.begin(part.clone())?;
+            let (found, counts) = feed.rows(&part, |rows| {
+                written.write(rows)?;
+                go_on()
+            })?;
+            written.finish(counts.lost, counts.coplanar)?;
+            lost += counts.lost;
+            coplanar += counts.coplanar;
+            gpu_micros += found.gpu_micros;
+            tiles += u64::from(found.tiles);
+            state.items_done += 1;
+            state.rows += counts.rows;
+            state.seconds = start.elapsed().as_secs_f64();
+            progress(&state);
+            go_on()?;
         }
-        match stop.load(Ordering::Relaxed) {
-            true => Err(PeelError::Interrupted),
-            false => Ok(()),
-        }
+        Ok(())
     })?;
-    drop(part);
     Ok(ExtractReport {
         manifest: writer.finish()?,
-        parts: missing.len() as u32,
-        rows: total.rows,
+        parts: state.items,
+        rows: state.rows,
         gpu_micros,
         wall_micros: start.elapsed().as_secs_f64() * 1e6,
-        lost: total.lost,
-        coplanar: total.coplanar,
+        lost,
+        coplanar,
         tiles,
     })
-}
-
-/// The GPU's side: every item's tiles into the channel.
-pub(crate) fn peel<'a>(
-    gpu: &Gpu,
-    scenes: &[Scene],
-    options: &ExtractOptions,
-    items: impl IntoIterator<Item = &'a Item>,
-    outbox: &Outbox,
-) {
-    let mut current = None;
-    for item in items {
-        let peeled = peel_item(gpu, scenes, options, item, &mut current, outbox);
-        if let Err(error) = peeled {
-            // The other side may have stopped it.
-            let _ = outbox.deliver(Message::Failed(in_part(error, options, item, scenes)));
-            return;
-        }
-    }
 }
 
 /// A scene or a varied copy of one that is on the GPU, behind their numbers.
 type Current = ((u32, u32), Scene, Harvester);
 
-fn peel_item(
+/// The GPU's side: peels these parts.
+pub(crate) fn peel(
     gpu: &Gpu,
     scenes: &[Scene],
     options: &ExtractOptions,
-    item: &Item,
+    parts: impl IntoIterator<Item = Part>,
+    outbox: &Outbox,
+) -> Result<(), PeelError> {
+    let mut current = None;
+    for part in parts {
+        let (index, view) = (part.index, part.view);
+        let scene = &scenes[part.scene as usize];
+        peel_part(gpu, scene, options, part, &mut current, outbox).map_err(|error| {
+            // Of a shard, an error says which part and whose: it is read among those of other workers.
+            if options.shard.is_none() || matches!(error, PeelError::Interrupted) {
+                return error;
+            }
+            PeelError::Part {
+                index,
+                scene: scene.name.clone(),
+                view,
+                worker: worker_name(),
+                source: Box::new(error),
+            }
+        })?;
+    }
+    Ok(())
+}
+
+fn peel_part(
+    gpu: &Gpu,
+    scene: &Scene,
+    options: &ExtractOptions,
+    mut part: Part,
     current: &mut Option<Current>,
     outbox: &Outbox,
 ) -> Result<(), PeelError> {
-    let key = (item.scene, item.copy);
+    let key = (part.scene, part.copy);
     // The old scene's buffers go before the new one's come.
     let kept = match current.take().filter(|(of, _, _)| *of == key) {
         Some(kept) => kept,
         None => {
-            let scene = scenes[item.scene as usize].varied(options.seed, item.copy);
+            let scene = scene.varied(options.seed, part.copy);
             let (size, sampled) = (options.size, options.pixels < 1.0);
-            let budget = Some(options.budget.unwrap_or(DEFAULT_BUDGET));
-            let harvester = Harvester::new(gpu, &scene, size, options.peel, sampled, budget)?;
+            let harvester = Harvester::new(gpu, &scene, size, options.peel, sampled, Some(BUDGET))?;
             (key, scene, harvester)
         }
     };
     let (_, scene, harvester) = current.insert(kept);
-    let camera = &scene.views[item.view as usize];
-    outbox.deliver(Message::Begin(Part {
-        index: item.index,
-        scene: item.scene,
-        copy: item.copy,
-        view: item.view,
-        camera: camera_info(camera),
-        width: options.size[0],
-        height: options.size[1],
-        ..Part::default()
-    }))?;
+    let camera = &scene.views[part.view as usize];
+    part.camera = camera_info(camera);
     // The hash takes 32 bits of seed; both halves count.
     let sample = PixelSample {
         seed: (options.seed ^ (options.seed >> 32)) as u32,
-        view: item.index,
+        view: part.index,
         threshold: peelnet_core::hash::sample_threshold(options.pixels),
     };
-    let found = harvester.harvest(
-        camera,
-        sample,
-        options.max_passes,
-        || outbox.spare(),
-        |tile| outbox.deliver(Message::Tile(tile)),
-    )?;
+    outbox.deliver(Message::Begin(part))?;
+    let found = harvester.harvest(camera, sample, options.max_passes, |tile| outbox.tile(tile))?;
     outbox.deliver(Message::End(found))
-}
-
-/// Of a shard, an error says which part and whose: it is read among those of other workers.
-fn in_part(error: PeelError, options: &ExtractOptions, item: &Item, scenes: &[Scene]) -> PeelError {
-    if options.shard.is_none() || matches!(error, PeelError::Interrupted) {
-        return error;
-    }
-    PeelError::Part {
-        index: item.index,
-        scene: scenes[item.scene as usize].name.clone(),
-        view: item.view,
-        worker: worker_name(),
-        source: Box::new(error),
-    }
 }
 
 /// Adapters that are expected to give the same bytes: software, or GPUs of one name and back end.
@@ -399,20 +378,12 @@ fn adapter_class(gpu: &Gpu) -> String {
 }
 
 /// What shapes the rows beside the scenes' contents.
-fn settings(
-    scenes: &[Scene],
-    options: &ExtractOptions,
-) -> Result<BTreeMap<String, String>, PeelError> {
-    let passes = options
-        .max_passes
-        .map_or("all".to_owned(), |n| n.to_string());
+fn settings(items: &[Part], options: &ExtractOptions) -> BTreeMap<String, String> {
+    let passes = options.max_passes;
+    let passes = passes.map_or("all".to_owned(), |n| n.to_string());
     // Scenes that a program made or changed have cameras that no file has.
-    let mut cameras = String::new();
-    for item in items(scenes, options.views, options.augment)? {
-        let view = &scenes[item.scene as usize].views[item.view as usize];
-        let (scene, copy, camera) = (item.scene, item.copy, camera_info(view));
-        cameras += &format!("{scene} {copy} {} {camera:?}\n", item.view);
-    }
+    let line = |p: &Part| format!("{} {} {} {:?}\n", p.scene, p.copy, p.view, p.camera);
+    let cameras: String = items.iter().map(line).collect();
     let [width, height] = options.size;
     let named = [
         ("size", format!("{width}x{height}")),
@@ -422,7 +393,7 @@ fn settings(
             peelnet_dataset::sha256(cameras.as_bytes()),
         ),
     ];
-    Ok(named.map(|(name, value)| (name.to_owned(), value)).into())
+    named.map(|(name, value)| (name.to_owned(), value)).into()
 }
 
 fn scene_entry(scene: &Scene) -> SceneEntry {
@@ -434,16 +405,5 @@ fn scene_entry(scene: &Scene) -> SceneEntry {
         sha256: scene.hash.clone(),
         held_out: scene.held_out,
         effects: effects.map(|e| e.name.to_owned()).collect(),
-    }
-}
-
-fn camera_info(camera: &Camera) -> CameraInfo {
-    CameraInfo {
-        position: camera.position.to_array(),
-        target: camera.target.to_array(),
-        up: camera.up.to_array(),
-        fov_y_degrees: camera.fov_y_degrees,
-        near: camera.near,
-        far: camera.far,
     }
 }

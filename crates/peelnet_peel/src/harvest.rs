@@ -65,9 +65,9 @@ struct Step {
     pad: [u32; 2],
 }
 
+/// Passes that find layers, for the ways that do not store and sort.
 #[derive(Debug)]
 enum Peeler {
-    SBuffer,
     Dual(Box<DualPeel>),
     Single(Box<SinglePeel>),
 }
@@ -79,18 +79,18 @@ pub struct Harvester {
     scene: SceneBuffers,
     frame: FrameTargets,
     sbuffer: SBuffer,
-    peeler: Peeler,
+    peeler: Option<Peeler>,
     /// They put peeled layers into runs, in turn; made anew when storage grows.
     collectors: Option<[Kernel; 2]>,
     step: wgpu::Buffer,
     with_triangles: bool,
+    /// Its memory is used again.
+    tile: RawTile,
 }
 
 /// What was found in one view.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Harvest {
-    /// Fragments of the view.
-    pub fragments: u64,
     /// Fragments of its fullest pixel.
     pub max_layers: u32,
     /// Tiles it took.
@@ -112,26 +112,29 @@ impl Harvester {
         sampled: bool,
         budget: Option<u64>,
     ) -> Result<Self, PeelError> {
-        let features: &[&'static str] = if sampled {
-            &["dataset", "sampled"]
-        } else {
-            &["dataset"]
-        };
+        let features = &["dataset", "sampled"][..1 + usize::from(sampled)];
         let scene = SceneBuffers::new(gpu, scene)?;
         if scene.tinted {
             return Err(PeelError::Tinted);
         }
         let frame = scene.targets(size, Output::Image, None)?;
         let peeler = match peel {
-            Peel::SBuffer => Peeler::SBuffer,
-            Peel::Dual => Peeler::Dual(DualPeel::new(&scene, &frame, features, None)?.into()),
-            Peel::Single => Peeler::Single(SinglePeel::new(&scene, &frame, features)?.into()),
+            Peel::SBuffer => None,
+            Peel::Dual => {
+                let dual = DualPeel::new(&scene, &frame, features, None)?;
+                Some(Peeler::Dual(dual.into()))
+            }
+            Peel::Single => {
+                let single = SinglePeel::new(&scene, &frame, features)?;
+                Some(Peeler::Single(single.into()))
+            }
         };
         Ok(Self {
             sbuffer: SBuffer::new(&scene, &frame, budget, features)?,
             step: gpu.upload("step", &[Step::zeroed()], wgpu::BufferUsages::UNIFORM),
             collectors: None,
             with_triangles: false,
+            tile: RawTile::default(),
             gpu: gpu.clone(),
             scene,
             frame,
@@ -141,7 +144,7 @@ impl Harvester {
 
     /// Whether tiles hold the triangles of their fragments, which [`Peel::SBuffer`] alone keeps.
     pub const fn keep_triangles(&mut self, keep: bool) {
-        self.with_triangles = keep && matches!(self.peeler, Peeler::SBuffer);
+        self.with_triangles = keep && self.peeler.is_none();
     }
 
     /// The warp that methods take a view's depths through.
@@ -149,8 +152,8 @@ impl Harvester {
         self.scene.depth_warp(camera)
     }
 
-    /// Finds a view's fragments and hands each tile over. `next` gives an empty tile to fill (so that memory is used
-    /// again), `ready` takes the full one and may end the harvest by an error.
+    /// Finds a view's fragments and hands each tile over. `ready` may take it, and leave another whose memory is used, and it may end the
+    /// harvest by an error.
     ///
     /// # Errors
     /// A lost device, a pixel beyond the budget, or what `ready` returns.
@@ -159,99 +162,87 @@ impl Harvester {
         camera: &Camera,
         sample: PixelSample,
         max_passes: Option<u32>,
-        mut next: impl FnMut() -> RawTile,
-        mut ready: impl FnMut(RawTile) -> Result<(), PeelError>,
+        mut ready: impl FnMut(&mut RawTile) -> Result<(), PeelError>,
     ) -> Result<Harvest, PeelError> {
-        // A handle, so that storage can be planned while it records.
-        let gpu = &self.gpu.clone();
+        // Handles, so that storage can be planned while it records.
+        let (gpu, mut raw) = (&self.gpu.clone(), std::mem::take(&mut self.tile));
         let (mut encoder, mut timer) = (gpu.encoder(), Timer::new(gpu));
         let mut recorder = Recorder::new(gpu, &mut encoder, Some(&mut timer));
-        self.scene.set_view(
-            &mut recorder,
-            camera,
-            &self.frame,
-            sample,
-            SamplePoint::MIDDLE,
-        );
-        self.scene
-            .draw_background(&mut recorder, &self.frame, None, true);
-        let found = self
-            .sbuffer
-            .count
-            .run(&mut recorder, &self.scene, &self.frame)?;
+        let (scene, frame) = (&self.scene, &self.frame);
+        scene.set_view(&mut recorder, camera, frame, sample, SamplePoint::MIDDLE);
+        scene.draw_background(&mut recorder, frame, None, true);
+        let found = self.sbuffer.count.run(&mut recorder, scene, frame)?;
         let needed = match self.peeler {
-            Peeler::SBuffer => found,
+            None => found,
             // They come sorted.
-            Peeler::Dual(_) | Peeler::Single(_) => FragmentCount { most: 0, ..found },
+            Some(_) => FragmentCount { most: 0, ..found },
         };
-        let (tiles, grown) = self
-            .sbuffer
-            .plan_counted(&self.scene, &self.frame, needed)?;
+        let (tiles, grown) = self.sbuffer.plan_counted(scene, frame, needed)?;
         if grown {
             self.collectors = self.collectors()?;
         }
+        let passes = max_passes.unwrap_or(u32::MAX);
         for tile in &tiles {
             match &self.peeler {
-                Peeler::SBuffer => {
-                    self.sbuffer
-                        .store_and_sort(&mut recorder, &self.scene, &self.frame, tile);
+                None => {
+                    let sbuffer = &self.sbuffer;
+                    sbuffer.store_and_sort(&mut recorder, scene, frame, tile);
                 }
-                Peeler::Dual(_) | Peeler::Single(_) => {
-                    self.peel(&mut recorder, tile, found.most, max_passes);
-                }
+                Some(peeler) => self.peel(peeler, &mut recorder, tile, found.most, passes),
             }
             recorder.submit();
-            let mut raw = next();
             self.read(tile, &mut raw)?;
             if !raw.depths.is_empty() {
-                ready(raw)?;
+                ready(&mut raw)?;
             }
         }
+        self.tile = raw;
         let faults = &self.sbuffer.count.faults;
         CountPass::check(&gpu.read(faults, 0..faults.size())?, self.frame.size[0])?;
         let times = timer.finish(gpu, &mut encoder);
         gpu.queue.submit([encoder.finish()]);
         let times = gpu.block_on(times)?;
         Ok(Harvest {
-            fragments: found.total,
             max_layers: found.most,
             tiles: tiles.len() as u32,
             gpu_micros: times.iter().map(|t| t.micros).sum(),
         })
     }
 
-    /// Peels the whole frame and keeps what lies in `tile`.
-    fn peel(&self, recorder: &mut Recorder<'_>, tile: &Tile, layers: u32, cap: Option<u32>) {
+    /// Peels the whole frame of so many layers and keeps what lies in `tile`.
+    fn peel(
+        &self,
+        peeler: &Peeler,
+        recorder: &mut Recorder<'_>,
+        tile: &Tile,
+        layers: u32,
+        most_passes: u32,
+    ) {
         let (Some(collectors), Some(storage)) = (&self.collectors, self.sbuffer.storage()) else {
             return;
         };
         recorder.write(&self.sbuffer.tile, &[*tile]);
         // A depth of 0 marks a slot that no pass fills.
         recorder.encoder().clear_buffer(&storage.depths, 0, None);
-        let passes = match &self.peeler {
+        let (scene, frame) = (&self.scene, &self.frame);
+        let passes = match peeler {
             Peeler::Dual(dual) => {
-                dual.init(recorder, &self.scene, &self.frame);
+                dual.init(recorder, scene, frame);
                 layers.div_ceil(2)
             }
             Peeler::Single(single) => {
                 single.init(recorder);
                 layers
             }
-            Peeler::SBuffer => 0,
         };
-        for pass_index in 0..passes.min(cap.unwrap_or(u32::MAX)) {
-            match &self.peeler {
-                Peeler::Dual(dual) => {
-                    dual.peel(recorder, &self.scene, &self.frame, pass_index, false);
-                }
-                Peeler::Single(single) => {
-                    single.peel(recorder, &self.scene, &self.frame, pass_index);
-                }
-                Peeler::SBuffer => {}
+        for pass_index in 0..passes.min(most_passes) {
+            match peeler {
+                Peeler::Dual(dual) => dual.peel(recorder, scene, frame, pass_index, false),
+                Peeler::Single(single) => single.peel(recorder, scene, frame, pass_index),
             }
             let step = Step {
                 pass_index,
-                width: self.frame.size[0],
+                width: frame.size[0],
                 pad: [0; 2],
             };
             recorder.write(&self.step, &[step]);
@@ -260,66 +251,60 @@ impl Harvester {
     }
 
     fn collectors(&self) -> Result<Option<[Kernel; 2]>, PeelError> {
-        let Some(storage) = self.sbuffer.storage() else {
+        let (Some(peeler), Some(storage)) = (&self.peeler, self.sbuffer.storage()) else {
             return Ok(None);
         };
-        let common = [
-            Bind::Uniform(&self.sbuffer.tile),
-            Bind::Uniform(&self.step),
-            Bind::Read(&self.sbuffer.count.offsets),
-            Bind::Write(&storage.depths),
-            Bind::Write(&storage.colors),
-        ];
-        let textures = |from: usize| match &self.peeler {
-            Peeler::SBuffer => vec![],
-            Peeler::Dual(dual) => vec![
-                Bind::Texture(&dual.ranges[from]),
-                Bind::Texture(&dual.front),
-                Bind::Texture(&dual.back),
-            ],
-            Peeler::Single(single) => vec![
-                Bind::Texture(&single.keys[1 - from]),
-                Bind::Texture(&single.layer),
-            ],
-        };
-        let shader = match &self.peeler {
-            Peeler::SBuffer => return Ok(None),
-            Peeler::Dual(_) => "peel::collect_dual",
-            Peeler::Single(_) => "peel::collect_single",
+        let (shader, textures) = match peeler {
+            Peeler::Dual(dual) => {
+                let [front, back] = [&dual.front, &dual.back].map(Bind::Texture);
+                let bind = |range| vec![Bind::Texture(range), front, back];
+                ("peel::collect_dual", dual.ranges.each_ref().map(bind))
+            }
+            Peeler::Single(single) => {
+                let [first, second] = single.keys.each_ref();
+                let bind = |key| vec![Bind::Texture(key), Bind::Texture(&single.layer)];
+                ("peel::collect_single", [second, first].map(bind))
+            }
         };
         let wgsl = peelnet_shaders::link(shader, &[], &[])?;
-        let kernel = |from| {
-            let entries = [&common, textures(from).as_slice()].concat();
+        let kernel = |textures: Vec<Bind<'_>>| {
+            let mut entries = vec![
+                Bind::Uniform(&self.sbuffer.tile),
+                Bind::Uniform(&self.step),
+                Bind::Read(&self.sbuffer.count.offsets),
+                Bind::Write(&storage.depths),
+                Bind::Write(&storage.colors),
+            ];
+            entries.extend(textures);
             Kernel::new(&self.gpu, "collect", &wgsl, &entries)
         };
-        Ok(Some([0, 1].map(kernel)))
+        Ok(Some(textures.map(kernel)))
     }
 
     /// Reads a tile's runs back.
     fn read(&self, tile: &Tile, raw: &mut RawTile) -> Result<(), PeelError> {
-        let gpu = &self.gpu;
+        let (gpu, offsets) = (&self.gpu, &mut raw.offsets);
         raw.first_pixel = tile.begin;
         let pixels = u64::from(tile.begin) * 4..u64::from(tile.end) * 4 + 4;
-        gpu.read_into(&self.sbuffer.count.offsets, pixels, &mut raw.offsets)?;
-        let base = raw.offsets.first().copied().unwrap_or(0);
-        for offset in &mut raw.offsets {
-            *offset -= base;
+        gpu.read_into(&self.sbuffer.count.offsets, pixels, offsets)?;
+        let base = offsets.first().copied().unwrap_or(0);
+        offsets.iter_mut().for_each(|offset| *offset -= base);
+        let fragments = u64::from(offsets.last().copied().unwrap_or(0));
+        let Some(storage) = self.sbuffer.storage() else {
+            return Ok(());
+        };
+        gpu.read_into(&storage.depths, 0..fragments * 4, &mut raw.depths)?;
+        gpu.read_into(&storage.colors, 0..fragments * 16, &mut raw.colors)?;
+        if self.with_triangles {
+            gpu.read_into(&storage.triangles, 0..fragments * 4, &mut raw.triangles)?;
         }
-        let fragments = u64::from(raw.offsets.last().copied().unwrap_or(0));
-        if let Some(storage) = self.sbuffer.storage() {
-            gpu.read_into(&storage.depths, 0..fragments * 4, &mut raw.depths)?;
-            gpu.read_into(&storage.colors, 0..fragments * 16, &mut raw.colors)?;
+        // Long runs are sorted by the numbers of their slots.
+        if let Some(long) = self.sbuffer.long_runs() {
+            let order: Vec<u32> = gpu.read(&long.order, 0..fragments * 4)?;
+            put_in_order(&mut raw.depths, &order);
+            put_in_order(&mut raw.colors, &order);
             if self.with_triangles {
-                gpu.read_into(&storage.triangles, 0..fragments * 4, &mut raw.triangles)?;
-            }
-            // Long runs are sorted by the numbers of their slots.
-            if let Some(long) = self.sbuffer.long_runs() {
-                let order: Vec<u32> = gpu.read(&long.order, 0..fragments * 4)?;
-                put_in_order(&mut raw.depths, &order);
-                put_in_order(&mut raw.colors, &order);
-                if self.with_triangles {
-                    put_in_order(&mut raw.triangles, &order);
-                }
+                put_in_order(&mut raw.triangles, &order);
             }
         }
         Ok(())

@@ -6,24 +6,15 @@
 //! turns runs into rows ([`rows`]) and writes them ([`extract()`]) or hands them to a program ([`batches()`]) while the GPU
 //! works on the next tile. Memory is bounded by the tile's budget, whatever the number of views or fragments.
 
-#[cfg(not(target_arch = "wasm32"))]
 mod batches;
 mod error;
-// A browser has no files, and nothing may wait there.
-#[cfg(not(target_arch = "wasm32"))]
 mod extract;
-#[cfg(not(target_arch = "wasm32"))]
 pub mod harvest;
 pub mod items;
 pub mod rows;
-#[cfg(not(target_arch = "wasm32"))]
 pub mod synthetic;
 
-#[cfg(not(target_arch = "wasm32"))]
 pub use batches::{Batches, batches};
 pub use error::PeelError;
-#[cfg(not(target_arch = "wasm32"))]
 pub use extract::{ExtractOptions, ExtractReport, Progress, extract};
-#[cfg(not(target_arch = "wasm32"))]
 pub use harvest::Peel;
-pub use items::Views;

@@ -2,7 +2,6 @@
 
 use crate::PeelError;
 use peelnet_dataset::{FragmentBatch, Part};
-use std::ops::AddAssign;
 
 /// What a tile left in GPU storage, read back.
 #[derive(Debug, Default)]
@@ -20,30 +19,6 @@ pub struct RawTile {
     pub triangles: Vec<u32>,
 }
 
-/// What is the same for all rows of a view.
-#[derive(Clone, Copy, Debug)]
-pub struct ViewConstants {
-    /// The `view` column.
-    pub view: u32,
-    /// Frame width in pixels.
-    pub width: u32,
-    /// Near plane, scene units.
-    pub near: f32,
-    /// Far plane, scene units.
-    pub far: f32,
-}
-
-impl From<&Part> for ViewConstants {
-    fn from(part: &Part) -> Self {
-        Self {
-            view: part.index,
-            width: part.width,
-            near: part.camera.near,
-            far: part.camera.far,
-        }
-    }
-}
-
 /// What was noticed on the way.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct RowCounts {
@@ -53,76 +28,60 @@ pub struct RowCounts {
     pub lost: u64,
     /// Neighbours of equal depth.
     pub coplanar: u64,
-    /// Rows that are nearer than the one before in their pixel.
-    pub unsorted: u64,
-}
-
-impl RowCounts {
-    /// # Errors
-    /// Rows out of order, which the GPU should have sorted.
-    pub fn check(&self) -> Result<(), PeelError> {
-        match self.unsorted {
-            0 => Ok(()),
-            rows => Err(PeelError::Unsorted(rows)),
-        }
-    }
-}
-
-impl AddAssign for RowCounts {
-    fn add_assign(&mut self, other: Self) {
-        self.rows += other.rows;
-        self.lost += other.lost;
-        self.coplanar += other.coplanar;
-        self.unsorted += other.unsorted;
-    }
 }
 
 /// Fragments of a pixel beyond which sums and products are formed in 64 bits: `n` factors formed in 32 bits err by up to `2n` roundings
 /// of 2⁻²⁴, a hundredth at 100,000. Rows of shorter runs keep the bits that they have always had.
 const LONG: usize = 1500;
 
-/// Appends the rows of `tile`, calling `flush` whenever the batch holds `chunk` rows or more (pixels stay whole) and
-/// once at the end.
+/// Makes the rows of a part's tile in `batch`, which is empty, and calls `flush` whenever it holds `chunk` rows or more (pixels stay
+/// whole) and once at the end.
 ///
 /// # Errors
-/// What `flush` returns.
-pub fn append_rows<E>(
+/// What `flush` returns, and rows out of order, which the GPU should have sorted.
+pub fn make_rows(
     tile: &RawTile,
-    constants: ViewConstants,
+    part: &Part,
     batch: &mut FragmentBatch,
     chunk: usize,
-    mut flush: impl FnMut(&FragmentBatch) -> Result<(), E>,
-) -> Result<RowCounts, E> {
-    let mut counts = RowCounts::default();
+    counts: &mut RowCounts,
+    mut flush: impl FnMut(&FragmentBatch) -> Result<(), PeelError>,
+) -> Result<(), PeelError> {
+    let mut unsorted = 0;
+    let mut flush = |batch: &mut FragmentBatch| {
+        // The columns that all rows of a view share.
+        let rows = batch.layer.len();
+        batch.view.resize(rows, part.index);
+        batch.near.resize(rows, part.camera.near);
+        batch.far.resize(rows, part.camera.far);
+        let flushed = flush(batch);
+        batch.clear();
+        flushed
+    };
     for (pixel, run) in (tile.first_pixel..).zip(tile.offsets.windows(2)) {
         let run = run[0] as usize..run[1] as usize;
         if run.is_empty() {
             continue;
         }
-        let (mut n, mut alpha_sum) = (0u32, 0.0f32);
-        let is_long = run.len() > LONG;
-        let (mut long_sum, mut long_product) = (0.0f64, 1.0f64);
-        for i in run.clone() {
-            if tile.depths[i] > 0.0 {
-                n += 1;
-                alpha_sum += tile.colors[i][3];
-                long_sum += f64::from(tile.colors[i][3]);
-            }
+        let (mut n, mut alpha_sum, mut long_sum) = (0u32, 0.0f32, 0.0f64);
+        for i in run.clone().filter(|&i| tile.depths[i] > 0.0) {
+            n += 1;
+            alpha_sum += tile.colors[i][3];
+            long_sum += f64::from(tile.colors[i][3]);
         }
+        let is_long = run.len() > LONG;
         if is_long {
             alpha_sum = long_sum as f32;
         }
         counts.lost += u64::from(run.len() as u32 - n);
         counts.rows += u64::from(n);
-        let (mut transmittance, mut layer, mut before) = (1.0f32, 0, 0.0);
-        for i in run {
+        let (mut transmittance, mut long_product) = (1.0f32, 1.0f64);
+        let mut before = 0.0;
+        for (layer, i) in (0..).zip(run.filter(|&i| tile.depths[i] > 0.0)) {
             let depth = tile.depths[i];
-            if depth <= 0.0 {
-                continue;
-            }
             let [r, g, b, alpha] = tile.colors[i];
             counts.coplanar += u64::from(depth == before);
-            counts.unsorted += u64::from(depth < before);
+            unsorted += u64::from(depth < before);
             before = depth;
             let through = 1.0 - alpha;
             batch.one_minus_alpha.push(through);
@@ -132,40 +91,29 @@ pub fn append_rows<E>(
             batch.r.push(r);
             batch.g.push(g);
             batch.b.push(b);
+            transmittance *= through;
             if is_long {
                 long_product *= 1.0 - f64::from(alpha);
                 transmittance = long_product as f32;
-            } else {
-                transmittance *= through;
             }
-            layer += 1;
         }
         // The columns that a pixel's rows share.
         let rows = batch.layer.len();
         batch.alpha_sum.resize(rows, alpha_sum);
         batch.fragment_count.resize(rows, n);
-        batch.x.resize(rows, pixel % constants.width);
-        batch.y.resize(rows, pixel / constants.width);
+        batch.x.resize(rows, pixel % part.width);
+        batch.y.resize(rows, pixel / part.width);
         if rows >= chunk {
-            finish(batch, constants);
             flush(batch)?;
-            batch.clear();
         }
     }
     if !batch.is_empty() {
-        finish(batch, constants);
         flush(batch)?;
-        batch.clear();
     }
-    Ok(counts)
-}
-
-/// Fills the columns that all rows of a view share.
-fn finish(batch: &mut FragmentBatch, constants: ViewConstants) {
-    let rows = batch.layer.len();
-    batch.view.resize(rows, constants.view);
-    batch.near.resize(rows, constants.near);
-    batch.far.resize(rows, constants.far);
+    match unsorted {
+        0 => Ok(()),
+        rows => Err(PeelError::Unsorted(rows)),
+    }
 }
 
 #[cfg(test)]
@@ -188,33 +136,26 @@ mod tests {
         // Two coplanar fragments of which peeling lost one.
         tile.depths.extend([3.0, 0.0]);
         tile.colors.extend([[0.5; 4]; 2]);
-        let constants = ViewConstants {
-            view: 2,
+        let mut part = Part {
+            index: 2,
             width: 5,
-            near: 0.1,
-            far: 100.0,
+            ..Part::default()
         };
-        let mut all = FragmentBatch::default();
-        let counts = append_rows(
-            &tile,
-            constants,
-            &mut FragmentBatch::default(),
-            1,
-            |batch| {
-                batch.check()?;
-                all.extend_from(batch, 0..batch.len());
-                Ok::<_, peelnet_dataset::DatasetError>(())
-            },
-        )
+        part.camera.far = 100.0;
+        let (mut all, mut counts) = (FragmentBatch::default(), RowCounts::default());
+        let mut batch = FragmentBatch::default();
+        make_rows(&tile, &part, &mut batch, 1, &mut counts, |batch| {
+            batch.check()?;
+            all.extend_from(batch, 0..batch.len());
+            Ok(())
+        })
         .expect("rows");
-        assert_eq!(
-            counts,
-            RowCounts {
-                rows: 5,
-                lost: 1,
-                ..Default::default()
-            }
-        );
+        let expected = RowCounts {
+            rows: 5,
+            lost: 1,
+            coplanar: 0,
+        };
+        assert_eq!(counts, expected);
         assert_eq!(all.transmittance, [1.0, 0.5, 0.25, 0.125, 1.0]);
         assert_eq!(all.layer, [0, 1, 2, 3, 0]);
         assert_eq!(all.fragment_count, [4, 4, 4, 4, 1]);

@@ -7,14 +7,14 @@
 //! chance. A world is a part of the dataset like a view of a scene, with the same columns.
 
 use crate::{
-    ExtractReport, PeelError, Progress,
+    ExtractOptions, ExtractReport, PeelError, Progress,
     extract::{Message, Outbox, write},
     harvest::Harvest,
     rows::RawTile,
 };
 use peelnet_core::random::Random;
-use peelnet_dataset::{CameraInfo, Format, Header, MAX_WORK_ITEMS, Part, SceneEntry, worker_name};
-use std::{path::PathBuf, sync::atomic::AtomicBool};
+use peelnet_dataset::{CameraInfo, Header, MAX_WORK_ITEMS, Part, SceneEntry, worker_name};
+use std::sync::atomic::AtomicBool;
 
 /// Lists of one world.
 pub const PIXELS: u64 = 32 * 32;
@@ -24,23 +24,6 @@ pub const MAX_LISTS: u64 = PIXELS * MAX_WORK_ITEMS as u64;
 const MOST: usize = 160;
 /// The scene's name in the dataset.
 const NAME: &str = "synthetic";
-
-/// What to make.
-#[derive(Clone, Debug)]
-pub struct SyntheticOptions {
-    /// Folder of the dataset.
-    pub out: PathBuf,
-    /// Number of lists.
-    pub lists: u64,
-    /// File format.
-    pub format: Format,
-    /// Seed of everything.
-    pub seed: u64,
-    /// Does only what is missing of the dataset that is there.
-    pub resume: bool,
-    /// The command line, for the manifest.
-    pub command: String,
-}
 
 /// Something that rays meet.
 #[derive(Clone, Copy, Debug)]
@@ -175,17 +158,20 @@ impl World {
     }
 }
 
-/// Writes the dataset, part by part, as [`extract`](crate::extract) does.
+/// Writes a dataset of so many lists, part by part, as [`extract`](crate::extract()) does. Of the options, folder, format, seed, command
+/// and `resume` are used.
 ///
 /// # Errors
-/// A folder that cannot be written, or [`PeelError::Interrupted`] when `stop` becomes true.
+/// More than [`MAX_LISTS`], a folder that cannot be written, or [`PeelError::Interrupted`] when `stop` becomes true.
 pub fn synthetic(
-    options: &SyntheticOptions,
+    lists: u64,
+    options: &ExtractOptions,
     stop: &AtomicBool,
     progress: &mut dyn FnMut(&Progress),
 ) -> Result<ExtractReport, PeelError> {
-    if options.lists > MAX_LISTS {
-        return Err(PeelError::TooManyLists(options.lists));
+    if lists > MAX_LISTS {
+        let reason = format!("{lists} synthetic lists are too many: at most {MAX_LISTS}");
+        return Err(PeelError::setting("lists", reason));
     }
     let header = Header {
         format: options.format,
@@ -196,7 +182,7 @@ pub fn synthetic(
         command: options.command.clone(),
         peel: NAME.to_owned(),
         pixels_fraction: 1.0,
-        settings: [("number of lists".to_owned(), options.lists.to_string())].into(),
+        settings: [("number of lists".to_owned(), lists.to_string())].into(),
         scenes: vec![SceneEntry {
             name: NAME.to_owned(),
             file: NAME.to_owned(),
@@ -205,26 +191,25 @@ pub fn synthetic(
             held_out: false,
             effects: Vec::new(),
         }],
-        work_items: options.lists.div_ceil(PIXELS) as u32,
+        work_items: lists.div_ceil(PIXELS) as u32,
         resume: options.resume,
         worker: worker_name(),
         ..Header::default()
     };
     write(&options.out, header, stop, progress, |missing, outbox| {
-        // The other side may have stopped it.
-        let _ = missing
-            .iter()
-            .try_for_each(|&index| make(options, index, outbox));
+        let mut missing = missing.iter();
+        missing.try_for_each(|&index| {
+            let lists = PIXELS.min(lists - u64::from(index) * PIXELS);
+            make(options.seed, index, lists, outbox)
+        })
     })
 }
 
 /// One world into the channel.
-fn make(options: &SyntheticOptions, index: u32, outbox: &Outbox) -> Result<(), PeelError> {
-    let mut random = Random::new(options.seed, &[0x5e7f, index.into()]);
+fn make(seed: u64, index: u32, lists: u64, outbox: &Outbox) -> Result<(), PeelError> {
+    let mut random = Random::new(seed, &[0x5e7f, index.into()]);
     let world = World::new(&mut random);
-    let lists = PIXELS.min(options.lists - u64::from(index) * PIXELS);
-    let mut tile = outbox.spare();
-    let [near, far] = fill(&mut tile, &world, lists, &mut random);
+    let (mut tile, [near, far]) = draw(&world, lists, &mut random);
     outbox.deliver(Message::Begin(Part {
         index,
         view: index,
@@ -240,15 +225,13 @@ fn make(options: &SyntheticOptions, index: u32, outbox: &Outbox) -> Result<(), P
         height: 32,
         ..Part::default()
     }))?;
-    outbox.deliver(Message::Tile(tile))?;
+    outbox.tile(&mut tile)?;
     outbox.deliver(Message::End(Harvest::default()))
 }
 
-/// Fills a tile with a world's lists, sorted, and returns clip distances around them.
-fn fill(tile: &mut RawTile, world: &World, lists: u64, random: &mut Random) -> [f32; 2] {
-    tile.offsets.clear();
-    tile.depths.clear();
-    tile.colors.clear();
+/// A tile of a world's lists, sorted, and clip distances around them.
+fn draw(world: &World, lists: u64, random: &mut Random) -> (RawTile, [f32; 2]) {
+    let mut tile = RawTile::default();
     tile.offsets.push(0);
     for _ in 0..lists {
         let mut list = world.list(random);
@@ -261,35 +244,16 @@ fn fill(tile: &mut RawTile, world: &World, lists: u64, random: &mut Random) -> [
     }
     let near = tile.depths.iter().copied().fold(f32::MAX, f32::min);
     let far = tile.depths.iter().copied().fold(0.0, f32::max);
-    match far > 0.0 {
+    let clip = match far > 0.0 {
         true => [near * 0.5, far * 2.0],
         false => [0.1, 100.0],
-    }
+    };
+    (tile, clip)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn more_lists_than_a_dataset_can_hold_are_refused_with_the_limit() {
-        let folder = std::env::temp_dir().join("peelnet-never-made");
-        let options = SyntheticOptions {
-            out: folder.clone(),
-            lists: MAX_LISTS + 1,
-            format: Format::Csv,
-            seed: 1,
-            resume: false,
-            command: String::new(),
-        };
-        let refused = synthetic(&options, &AtomicBool::new(false), &mut |_| {});
-        let text = refused.map(drop).unwrap_err().to_string();
-        assert!(
-            text.contains("67108865") && text.contains("at most 67108864"),
-            "{text}"
-        );
-        assert!(!folder.exists());
-    }
 
     /// Worlds differ widely, and each of their lists is a valid pixel.
     #[test]
@@ -299,8 +263,7 @@ mod tests {
         for seed in 0..300 {
             let mut random = Random::new(seed, &[]);
             let world = World::new(&mut random);
-            let mut tile = RawTile::default();
-            let range = fill(&mut tile, &world, 64, &mut random);
+            let (tile, range) = draw(&world, 64, &mut random);
             assert_eq!(tile.offsets.len(), 65);
             for run in tile.offsets.windows(2) {
                 let depths = &tile.depths[run[0] as usize..run[1] as usize];

@@ -153,7 +153,6 @@ fn failed(path: &Path, reason: &dyn std::fmt::Display) -> RenderError {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use peelnet_files::Standing;
 
     #[test]
     fn files_read_back() {
@@ -191,12 +190,8 @@ mod tests {
         ] {
             let kind = ImageFormat::of(&at(name)).expect("an ending").kind();
             std::fs::write(at("foreign"), foreign).expect("writes");
-            let [own, other] = [name, "foreign"].map(|n| kind.standing(&at(n)).expect("stands"));
-            assert_eq!(
-                (own, other),
-                (Standing::Replaced, Standing::Foreign),
-                "{name}"
-            );
+            let found = [name, "foreign"].map(|n| kind.is_foreign(&at(n)).expect("reads"));
+            assert_eq!(found, [false, true], "{name}");
             std::fs::remove_file(at("foreign")).expect("removes");
         }
         assert_eq!(std::fs::read_dir(dir.path()).expect("lists").count(), 3);

@@ -29,7 +29,7 @@ impl OutputLock {
         let failed = io_error(&path);
         std::fs::create_dir_all(peelnet_files::folder_of(&path)).map_err(&failed)?;
         // No link, whose target would be created, and no device.
-        peelnet_files::Output::reserve(&path).map_err(&failed)?;
+        peelnet_files::check_file(&path).map_err(&failed)?;
         loop {
             let file = OpenOptions::new()
                 .write(true)

@@ -119,7 +119,7 @@ fn save(image: &Image, path: &Path) -> Fallible<String> {
     if cfg!(target_arch = "wasm32") {
         return keep(path, &image.encoded(format)?);
     }
-    if let Ok(peelnet_files::Standing::Foreign) = format.kind().standing(path) {
+    if format.kind().is_foreign(path).unwrap_or(false) {
         let name = shown(path);
         return Err(format!("{name}: another file has this name; choose another").into());
     }

@@ -7,10 +7,7 @@ use peelnet::Failure;
 use peelnet_dataset::is_remote;
 use peelnet_files::{check_is_folder, counted, printable, shown, thousands};
 use peelnet_gpu::Gpu;
-use peelnet_peel::{
-    ExtractOptions, ExtractReport, Progress, Views, extract,
-    synthetic::{SyntheticOptions, synthetic},
-};
+use peelnet_peel::{ExtractOptions, ExtractReport, Progress, extract, synthetic::synthetic};
 use peelnet_scene::Scene;
 use serde_json::json;
 use std::path::Path;
@@ -99,23 +96,9 @@ fn finished(folder: &Path) -> (u32, u32) {
 
 /// Peels, or makes lists up.
 fn report(context: &Context<'_>, args: &ExtractArgs) -> Result<ExtractReport, Failure> {
-    if let Some(lists) = args.synthetic {
-        let options = SyntheticOptions {
-            out: args.out.clone(),
-            lists,
-            format: args.format,
-            seed: args.seed,
-            resume: args.resume,
-            command: command_line(),
-        };
-        let bar = Bar::new(context.console, "synthetic", 1);
-        return Ok(synthetic(&options, context.stop, &mut |p| show(&bar, p))?);
-    }
-    let scenes = context.scenes(&args.scenes)?;
-    let gpu = context.gpu()?;
     let options = ExtractOptions {
         size: args.size,
-        views: args.views.map_or(Views::All, Views::First),
+        views: args.views,
         format: args.format,
         peel: args.peel,
         max_passes: args.max_passes,
@@ -127,6 +110,13 @@ fn report(context: &Context<'_>, args: &ExtractArgs) -> Result<ExtractReport, Fa
         command: command_line(),
         ..ExtractOptions::new(&args.out)
     };
+    if let Some(lists) = args.synthetic {
+        let bar = Bar::new(context.console, "synthetic", 1);
+        let mut show = |p: &Progress| show(&bar, p);
+        return Ok(synthetic(lists, &options, context.stop, &mut show)?);
+    }
+    let scenes = context.scenes(&args.scenes)?;
+    let gpu = context.gpu()?;
     peel(context, &gpu, &scenes, &options)
 }
 

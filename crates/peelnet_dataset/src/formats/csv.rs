@@ -5,29 +5,25 @@ use std::io::{Read, Write};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use super::{PartSink, PartSource, check_names, in_parallel};
-use crate::column::{Column, ColumnKind, ColumnMut, ColumnSlice, FragmentBatch};
+use rayon::prelude::*;
+
+use super::{PartSink, PartSource, check_names};
+use crate::column::{Column, ColumnMut, ColumnSlice, FragmentBatch};
 use crate::error::DatasetError;
 use crate::store::Fetched;
 
 /// Rows that are formatted into one buffer before it is written: about 2 MB of text.
 const ROWS_A_BUFFER: usize = 1 << 14;
 
-/// Writes a part as CSV.
 pub(super) struct CsvSink {
     path: PathBuf,
     file: File,
-    threads: usize,
 }
 
 impl CsvSink {
-    pub(super) fn new((path, file): (PathBuf, File), threads: usize) -> Result<Self, DatasetError> {
+    pub(super) fn new((path, file): (PathBuf, File)) -> Result<Self, DatasetError> {
         let header = Column::ALL.map(Column::name).join(",") + "\n";
-        let mut sink = Self {
-            path,
-            file,
-            threads,
-        };
+        let mut sink = Self { path, file };
         sink.append(header.as_bytes())?;
         Ok(sink)
     }
@@ -42,10 +38,12 @@ impl PartSink for CsvSink {
     fn write(&mut self, rows: &FragmentBatch) -> Result<(), DatasetError> {
         let starts: Vec<usize> = (0..rows.len()).step_by(ROWS_A_BUFFER).collect();
         // As many buffers as threads are in memory.
-        for starts in starts.chunks(self.threads) {
-            let texts = in_parallel(self.threads, starts, |&start| {
-                lines(rows, start..rows.len().min(start + ROWS_A_BUFFER))
-            });
+        for starts in starts.chunks(rayon::current_num_threads()) {
+            let ends = |start: usize| rows.len().min(start + ROWS_A_BUFFER);
+            let texts = starts
+                .par_iter()
+                .map(|&start| lines(rows, start..ends(start)));
+            let texts: Vec<Vec<u8>> = texts.collect();
             texts.iter().try_for_each(|text| self.append(text))?;
         }
         Ok(())
@@ -93,7 +91,6 @@ const BUFFER: usize = 1 << 18;
 /// Bytes of a line that are read: the reader keeps a whole line in memory.
 const MAX_LINE: usize = 1 << 16;
 
-/// Reads a part from CSV.
 pub(super) struct CsvSource {
     path: PathBuf,
     reader: csv::Reader<Lines>,
@@ -179,15 +176,15 @@ impl PartSource for CsvSource {
             for &column in &self.columns {
                 let field = &self.record[column.index()];
                 let text = std::str::from_utf8(field).ok();
-                let parsed = match rows.column_mut(column) {
-                    ColumnMut::F32(v) => text.and_then(|t| t.parse().ok()).map(|x| v.push(x)),
-                    ColumnMut::U32(v) => text.and_then(|t| t.parse().ok()).map(|x| v.push(x)),
+                let (parsed, kind) = match rows.column_mut(column) {
+                    ColumnMut::F32(v) => {
+                        (text.and_then(|t| t.parse().ok()).map(|x| v.push(x)), "f32")
+                    }
+                    ColumnMut::U32(v) => {
+                        (text.and_then(|t| t.parse().ok()).map(|x| v.push(x)), "u32")
+                    }
                 };
                 if parsed.is_none() {
-                    let kind = match column.kind() {
-                        ColumnKind::F32 => "f32",
-                        ColumnKind::U32 => "u32",
-                    };
                     let line = self.record.position().map_or(0, csv::Position::line);
                     let text = String::from_utf8_lossy(field);
                     let text = peelnet_files::printable(&text);

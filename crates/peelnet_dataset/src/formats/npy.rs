@@ -36,7 +36,6 @@ fn header(kind: ColumnKind, rows: u64) -> Vec<u8> {
     header
 }
 
-/// Writes a part as NPY arrays, one for each column.
 pub(super) struct NpySink(Vec<(Column, PathBuf, BufWriter<File>)>);
 
 impl NpySink {
@@ -76,43 +75,35 @@ impl PartSink for NpySink {
     }
 }
 
-/// Reads a part from NPY arrays.
 pub(super) struct NpySource {
-    columns: Vec<OpenColumn>,
-}
-
-struct OpenColumn {
-    column: Column,
-    path: PathBuf,
-    file: BufReader<File>,
+    columns: Vec<(Column, PathBuf, BufReader<File>)>,
     left: u64,
 }
 
 impl NpySource {
-    pub(super) fn open(files: &[Fetched], columns: &[Column]) -> Result<Self, DatasetError> {
+    /// Opens arrays of so many rows, which say what length and header a file must have.
+    pub(super) fn open(
+        files: &[Fetched],
+        columns: &[Column],
+        rows: u64,
+    ) -> Result<Self, DatasetError> {
         let open = files.iter().zip(columns);
-        let open = open.map(|(file, &column)| OpenColumn::open(file, column));
-        let columns: Vec<OpenColumn> = open.collect::<Result<_, _>>()?;
-        if let Some(other) = columns.iter().find(|c| c.left != columns[0].left) {
-            let (column, rows) = (columns[0].column, columns[0].left);
-            let reason = format!(
-                "{} rows, but column {column} of the same part has {rows}; write the dataset again",
-                other.left
-            );
-            return Err(DatasetError::invalid(&other.path, reason));
-        }
-        Ok(Self { columns })
+        let open = open.map(|(file, &column)| Self::open_column(file, column, rows));
+        Ok(Self {
+            columns: open.collect::<Result<_, _>>()?,
+            left: rows,
+        })
     }
-}
 
-impl OpenColumn {
-    /// The length of the file says how many rows there are, and so what its header must be.
-    fn open(file: &Fetched, column: Column) -> Result<Self, DatasetError> {
+    fn open_column(
+        file: &Fetched,
+        column: Column,
+        rows: u64,
+    ) -> Result<(Column, PathBuf, BufReader<File>), DatasetError> {
         let path = file.shown.clone();
         let file = file.open()?;
         let length = file.metadata().map_err(DatasetError::io(&path, "read"))?;
         let length = length.len();
-        let rows = length.saturating_sub(HEADER as u64) / 4;
         let mut file = BufReader::with_capacity(BUFFER, file);
         let mut found = Vec::new();
         let head = file.by_ref().take(HEADER as u64).read_to_end(&mut found);
@@ -123,46 +114,33 @@ impl OpenColumn {
             let text = String::from_utf8_lossy(header);
             text.replace(", }", "}").trim_end().to_owned()
         };
-        if text(&found) != text(&expected) || !length.is_multiple_of(4) {
+        let needed = rows.saturating_mul(4).saturating_add(HEADER as u64);
+        if text(&found) != text(&expected) || length != needed {
             let reason = format!(
-                "not an NPY file of column {column}: {length} bytes need the header {:?}, and it is {:?}; write the dataset again",
+                "not an NPY file of column {column}: {rows} rows need {needed} bytes with the header {:?}, and it has {length} with {:?}; write the dataset again",
                 text(&expected[10..]),
                 peelnet_files::printable(&text(found.get(10..).unwrap_or_default())),
             );
             return Err(DatasetError::invalid(&path, reason));
         }
-        Ok(Self {
-            column,
-            path,
-            file,
-            left: rows,
-        })
-    }
-
-    fn read(&mut self, rows: usize, to: ColumnMut<'_>) -> Result<(), DatasetError> {
-        let mut bytes = vec![0; 4 * rows];
-        let read = self.file.read_exact(&mut bytes);
-        read.map_err(|e| {
-            let reason = format!("{} more rows were expected: {e}", self.left);
-            DatasetError::changed(&self.path, reason)
-        })?;
-        let words = bytes.chunks_exact(4).map(|b| [b[0], b[1], b[2], b[3]]);
-        match to {
-            ColumnMut::F32(v) => v.extend(words.map(f32::from_le_bytes)),
-            ColumnMut::U32(v) => v.extend(words.map(u32::from_le_bytes)),
-        }
-        self.left -= rows as u64;
-        Ok(())
+        Ok((column, path, file))
     }
 }
 
 impl PartSource for NpySource {
     fn read(&mut self, max: usize, rows: &mut FragmentBatch) -> Result<usize, DatasetError> {
-        let left = self.columns.first().map_or(0, |c| c.left);
-        let count = usize::try_from(left).map_or(max, |left| left.min(max));
-        for column in &mut self.columns {
-            column.read(count, rows.column_mut(column.column))?;
+        let count = usize::try_from(self.left).map_or(max, |left| left.min(max));
+        for (column, path, file) in &mut self.columns {
+            let mut bytes = vec![0; 4 * count];
+            let read = file.read_exact(&mut bytes);
+            read.map_err(|e| DatasetError::changed(path, e))?;
+            let words = bytes.chunks_exact(4).map(|b| [b[0], b[1], b[2], b[3]]);
+            match rows.column_mut(*column) {
+                ColumnMut::F32(v) => v.extend(words.map(f32::from_le_bytes)),
+                ColumnMut::U32(v) => v.extend(words.map(u32::from_le_bytes)),
+            }
         }
+        self.left -= count as u64;
         Ok(count)
     }
 }

@@ -26,7 +26,9 @@ use parquet::file::serialized_reader::SerializedFileReader;
 use parquet::file::writer::{SerializedFileWriter, SerializedPageWriter, TrackedWrite};
 use parquet::schema::types::{ColumnDescPtr, Type, TypePtr};
 
-use super::{PartSink, PartSource, ROW_GROUP_ROWS, check_names, in_parallel};
+use rayon::prelude::*;
+
+use super::{PartSink, PartSource, ROW_GROUP_ROWS, check_names};
 use crate::column::{Column, ColumnKind, ColumnMut, ColumnSlice, FragmentBatch};
 use crate::error::DatasetError;
 use crate::store::Fetched;
@@ -35,27 +37,26 @@ use crate::store::Fetched;
 const PAGE_ROWS: usize = 1 << 17;
 
 fn schema() -> TypePtr {
-    let fields = Column::ALL
-        .into_iter()
-        .map(|column| {
-            let (physical, logical) = match column.kind() {
-                ColumnKind::F32 => (PhysicalType::FLOAT, None),
-                ColumnKind::U32 => (PhysicalType::INT32, Some(LogicalType::integer(32, false))),
-            };
-            let field = Type::primitive_type_builder(column.name(), physical)
-                .with_repetition(Repetition::REQUIRED)
-                .with_logical_type(logical)
-                .build()
-                .expect("a plain field is valid");
-            Arc::new(field)
-        })
-        .collect();
-    Arc::new(
-        Type::group_type_builder("fragments")
-            .with_fields(fields)
-            .build()
-            .expect("a flat group is valid"),
-    )
+    let fields = Column::ALL.map(|column| {
+        let logical = match column.kind() {
+            ColumnKind::F32 => None,
+            ColumnKind::U32 => Some(LogicalType::integer(32, false)),
+        };
+        let field = Type::primitive_type_builder(column.name(), physical_type(column))
+            .with_repetition(Repetition::REQUIRED)
+            .with_logical_type(logical)
+            .build();
+        Arc::new(field.expect("a plain field is valid"))
+    });
+    let group = Type::group_type_builder("fragments").with_fields(fields.into());
+    Arc::new(group.build().expect("a flat group is valid"))
+}
+
+const fn physical_type(column: Column) -> PhysicalType {
+    match column.kind() {
+        ColumnKind::F32 => PhysicalType::FLOAT,
+        ColumnKind::U32 => PhysicalType::INT32,
+    }
 }
 
 fn properties() -> WriterPropertiesPtr {
@@ -74,23 +75,20 @@ fn properties() -> WriterPropertiesPtr {
     )
 }
 
-/// Writes a part as Parquet.
 pub(super) struct ParquetSink {
     path: PathBuf,
     writer: SerializedFileWriter<File>,
     /// Rows that do not fill a row group yet.
     pending: FragmentBatch,
-    threads: usize,
 }
 
 impl ParquetSink {
-    pub(super) fn new((path, file): (PathBuf, File), threads: usize) -> Result<Self, DatasetError> {
+    pub(super) fn new((path, file): (PathBuf, File)) -> Result<Self, DatasetError> {
         let writer = SerializedFileWriter::new(file, schema(), properties());
         Ok(Self {
             writer: writer.map_err(|e| write_error(&path, e))?,
             path,
             pending: FragmentBatch::default(),
-            threads,
         })
     }
 
@@ -99,14 +97,14 @@ impl ParquetSink {
         let mut rows = std::mem::take(&mut self.pending);
         let descriptors = self.writer.schema_descr().columns().to_vec();
         let properties = self.writer.properties().clone();
-        let encoded = in_parallel(self.threads, Column::ALL, |column| {
+        let encoded = Column::ALL.into_par_iter().map(|column| {
             let descriptor = &descriptors[column.index()];
             encode(descriptor, &properties, rows.column(column))
         });
         let append = || -> Result<(), ParquetError> {
+            let encoded: Vec<_> = encoded.collect::<Result<_, _>>()?;
             let mut group = self.writer.next_row_group()?;
-            for column in encoded {
-                let (bytes, close) = column?;
+            for (bytes, close) in encoded {
                 group.append_column(&bytes, close)?;
             }
             group.close().map(|_| ())
@@ -133,12 +131,7 @@ fn encode(
         }
         (ColumnWriter::Int32ColumnWriter(w), ColumnSlice::U32(v)) => {
             // Parquet stores unsigned integers as the signed ones with the same bits.
-            let mut signed = Vec::with_capacity(PAGE_ROWS);
-            for chunk in v.chunks(PAGE_ROWS) {
-                signed.clear();
-                signed.extend(chunk.iter().map(|&x| x.cast_signed()));
-                w.write_batch(&signed, None, None)?;
-            }
+            w.write_batch(bytemuck::cast_slice(v), None, None)?;
         }
         _ => unreachable!("the schema is made from the columns' types"),
     }
@@ -206,10 +199,7 @@ impl ParquetSource {
         let names: Vec<String> = found.iter().map(|c| c.path().string()).collect();
         check_names(&path, "schema", &names)?;
         for (descriptor, column) in found.iter().zip(Column::ALL) {
-            let expected = match column.kind() {
-                ColumnKind::F32 => PhysicalType::FLOAT,
-                ColumnKind::U32 => PhysicalType::INT32,
-            };
+            let expected = physical_type(column);
             if descriptor.physical_type() != expected || descriptor.max_def_level() != 0 {
                 let reason = format!(
                     "column {column} is {} (definition level {}), expected a required {expected}",
@@ -229,28 +219,6 @@ impl ParquetSource {
             left: 0,
             signed: Vec::new(),
         })
-    }
-
-    /// Moves to the next row group; false at the end.
-    fn advance(&mut self) -> Result<bool, DatasetError> {
-        if self.next_group == self.file.num_row_groups() {
-            return Ok(false);
-        }
-        let group = self
-            .file
-            .get_row_group(self.next_group)
-            .map_err(|e| read_error(&self.path, e))?;
-        self.left = usize::try_from(group.metadata().num_rows()).map_err(|_| {
-            DatasetError::invalid(&self.path, "a row group has a negative number of rows")
-        })?;
-        self.readers = self
-            .columns
-            .iter()
-            .map(|c| group.get_column_reader(c.index()))
-            .collect::<Result<_, _>>()
-            .map_err(|e| read_error(&self.path, e))?;
-        self.next_group += 1;
-        Ok(true)
     }
 }
 
@@ -282,14 +250,13 @@ fn check_places(
 ) -> Result<(), DatasetError> {
     for group in file.metadata().row_groups() {
         for column in group.columns() {
-            let first = column
-                .dictionary_page_offset()
-                .unwrap_or_else(|| column.data_page_offset());
-            let end = u64::try_from(first)
-                .ok()
-                .zip(u64::try_from(column.compressed_size()).ok())
-                .and_then(|(first, bytes)| first.checked_add(bytes));
-            if end.is_none_or(|end| end > length) {
+            let first = column.dictionary_page_offset();
+            let first = first.unwrap_or_else(|| column.data_page_offset());
+            let bytes = column.compressed_size();
+            let end = first
+                .checked_add(bytes)
+                .filter(|_| first >= 0 && bytes >= 0);
+            if end.is_none_or(|end| end as u64 > length) {
                 let column = column.column_path().string();
                 let reason = format!(
                     "the footer says that column {column} lies outside of the file; write the dataset again"
@@ -309,9 +276,20 @@ fn read_error(path: &Path, what: impl fmt::Display) -> DatasetError {
 impl PartSource for ParquetSource {
     fn read(&mut self, max: usize, rows: &mut FragmentBatch) -> Result<usize, DatasetError> {
         while self.left == 0 {
-            if !self.advance()? {
+            if self.next_group == self.file.num_row_groups() {
                 return Ok(0);
             }
+            let group = self.file.get_row_group(self.next_group);
+            let group = group.map_err(|e| read_error(&self.path, e))?;
+            let rows = usize::try_from(group.metadata().num_rows());
+            self.left = rows.map_err(|_| {
+                DatasetError::invalid(&self.path, "a row group has a negative number of rows")
+            })?;
+            let columns = self.columns.iter();
+            let readers = columns.map(|c| group.get_column_reader(c.index()));
+            let readers = readers.collect::<Result<_, _>>();
+            self.readers = readers.map_err(|e| read_error(&self.path, e))?;
+            self.next_group += 1;
         }
         let count = self.left.min(max);
         for (reader, &column) in self.readers.iter_mut().zip(&self.columns) {
