@@ -25,7 +25,7 @@ pub const SUITES: [Step; 12] = [
     ("languages", languages),
     ("python", || python("test,ray")),
     ("faults", || {
-        again("PEELNET_KILLS", "50", "peelnet --test faults --")
+        again("PEELNET_KILLS", "50", "peelnet --test all -- faults::")
     }),
     ("search", || {
         let tests = "peelnet_tests --test all -- random_lists";
@@ -94,7 +94,7 @@ fn again(variable: &str, value: &str, tests: &str) -> Outcome {
 /// Commands as a whole and every fuzz target for so many seconds, one after the other; a finding ends it and lies in fuzz/artifacts.
 pub fn fuzz(seconds: &str) -> Outcome {
     println!("\n== commands, {seconds} s");
-    let commands = "peelnet --test fuzzed_commands --";
+    let commands = "peelnet --test all -- fuzzed_commands::";
     again("PEELNET_FUZZ_SECONDS", seconds, commands)?;
     ensure_subcommand("fuzz")?;
     run("cargo run --package peelnet_tests --example write_seeds")?;

@@ -1,9 +1,6 @@
 //! The program itself: what it refuses, with which exit code and which words, and what it answers.
-#![allow(clippy::unwrap_used, reason = "a failing test may panic")]
 
-mod common;
-
-use common::{Folder, SCENE};
+use crate::common::{Folder, SCENE};
 use std::path::Path;
 
 #[test]
@@ -128,6 +125,14 @@ const REFUSED: &str = "
     1 | bench two.toml --out own-chart | pareto.svg & --force
     1 | bench two.toml --out own-image | holiday.png & --force
 
+    1 | extract orbit.toml --size 16x16 --out shard --shard 2/2 | size is 16x12 & worker test & use the same command
+    1 | extract orbit.toml --size 16x12 --out shard --seed 9 --resume | seed is 1 & use the same command
+    1 | extract orbit.toml --size 16x12 --out shard --max-passes 2 --resume | limit of passes is all
+    1 | extract orbit.toml --size 16x12 --out shard --views 1 --resume | list of cameras is
+    1 | extract two.toml --size 16x12 --out shard --resume | scene 0 is
+    1 | extract orbit.toml --size 16x12 --out shard --format npy --shard 2/2 | format is parquet
+    1 | extract --synthetic 100 --out shard --resume | adapter class is
+
     1 | render two.toml --out two.toml/a.png | two.toml/a.png
     1 | render two.toml --out folder.png | folder.png: cannot be written: is a directory
     1 | train sound --out m --loss-curve notes.txt/loss.csv | --loss-curve & notes.txt
@@ -169,6 +174,7 @@ const ON_LINUX: &str = "";
 fn folder() -> Folder {
     let folder = Folder::new(&[
         ("two.toml", SCENE),
+        ("orbit.toml", &format!("{SCENE}[orbit]\nviews = 2\n")),
         ("notes.txt", "a user's own"),
         ("notes.png", "a user's own"),
         ("folder/notes.txt", "a user's own"),
@@ -213,6 +219,7 @@ mesh = '{name}.obj'
     }
     folder.prints("extract --synthetic 40 --format csv --out sound");
     folder.prints("extract two.toml --size 24x16 --out own");
+    folder.prints("extract orbit.toml --size 16x12 --out shard --shard 1/2");
     broken_datasets(&folder);
     folder.write_model("m.safetensors", peelnet::Recipe::SMALL);
     let mut model = folder.read("m.safetensors");

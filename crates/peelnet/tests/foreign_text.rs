@@ -1,9 +1,6 @@
 //! Text from strangers, in files and arguments, reaches neither a terminal nor a shader unescaped.
-#![allow(clippy::unwrap_used, reason = "a failing test may panic")]
 
-mod common;
-
-use common::{Folder, SCENE};
+use crate::common::{Folder, SCENE};
 use std::process::Output;
 
 /// Clears a screen, starts lines that look like ours, and turns the writing direction, in every way a terminal knows.

@@ -3,16 +3,13 @@
 //!
 //! Nothing guides the search: what a command covers is not seen across processes. The workspace's tests run some seeds; with the variable
 //! `PEELNET_FUZZ_SECONDS`, which `cargo xtask fuzz` sets, new ones are tried for so long.
-#![cfg(unix)]
-#![allow(clippy::unwrap_used, reason = "a failing test may panic")]
 
-mod common;
-
-use common::{Folder, SCENE};
+use crate::common::{Folder, SCENE};
 use peelnet_core::random::Random;
 use std::os::unix::fs::symlink;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
+use std::sync::mpsc;
 use std::time::{Duration, Instant};
 
 /// Command lines that every test run tries.
@@ -172,35 +169,15 @@ fn line(random: &mut Random) -> (Vec<String>, Vec<String>) {
 
 /// Runs a command, but not for ever.
 fn run(folder: &Folder, arguments: &[String]) -> Output {
-    let beside = |ending| folder.path().with_extension(ending);
-    let to = |ending| std::fs::File::create(beside(ending)).unwrap();
     let mut command = folder.command_of(arguments);
-    command
-        .stdin(Stdio::null())
-        .stdout(to("out"))
-        .stderr(to("err"));
-    let mut child = command.spawn().unwrap();
-    let start = Instant::now();
-    let status = loop {
-        if let Some(status) = child.try_wait().unwrap() {
-            break status;
-        }
-        if start.elapsed() > LONGEST {
-            child.kill().unwrap();
-            panic!("{arguments:?} does not end");
-        }
-        std::thread::sleep(Duration::from_millis(5));
-    };
-    let [stdout, stderr] = ["out", "err"].map(|ending| {
-        let bytes = std::fs::read(beside(ending)).unwrap();
-        std::fs::remove_file(beside(ending)).unwrap();
-        bytes
-    });
-    Output {
-        status,
-        stdout,
-        stderr,
-    }
+    command.stdin(Stdio::null());
+    command.stdout(Stdio::piped()).stderr(Stdio::piped());
+    let child = command.spawn().unwrap();
+    let (done, output) = mpsc::channel();
+    std::thread::spawn(move || done.send(child.wait_with_output()));
+    let output = output.recv_timeout(LONGEST);
+    let output = output.unwrap_or_else(|_| panic!("{arguments:?} does not end"));
+    output.unwrap()
 }
 
 fn check(ours: &Folder, seed: u64) -> i32 {

@@ -1,9 +1,6 @@
 //! The special measurements: `bench --designs`, `bench --path`, `--samples`, and `stress`.
-#![allow(clippy::unwrap_used, reason = "a failing test may panic")]
 
-mod common;
-
-use common::{Folder, SCENE, SPHERES, rows_of};
+use crate::common::{Folder, SCENE, SPHERES, rows_of};
 use serde_json::Value;
 
 fn rows(answer: &Value) -> &[Value] {

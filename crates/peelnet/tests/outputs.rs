@@ -1,9 +1,6 @@
 //! Outputs never destroy: what is replaced is said, and a signal leaves whole files or none. What is refused is in `command_line.rs`.
-#![allow(clippy::unwrap_used, reason = "a failing test may panic")]
 
-mod common;
-
-use common::{Folder, SCENE};
+use crate::common::{Folder, SCENE};
 use std::collections::BTreeMap;
 use std::path::Path;
 
