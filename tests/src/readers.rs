@@ -13,30 +13,18 @@ use std::{
 };
 use tempfile::TempDir;
 
-/// A reader and files to begin from.
-#[derive(Clone, Copy, Debug)]
-pub struct Reader {
-    /// The fuzz target's name.
-    pub name: &'static str,
-    /// Reads any bytes.
-    pub read: fn(&[u8]),
-    /// Files that are sound, and some that are nearly so.
-    pub seeds: fn() -> Vec<Vec<u8>>,
-}
-
-const fn reader(name: &'static str, read: fn(&[u8]), seeds: fn() -> Vec<Vec<u8>>) -> Reader {
-    Reader { name, read, seeds }
-}
+/// The name of a fuzz target, what it does with any bytes, and files to begin from: sound ones, and some that are nearly so.
+pub type Reader = (&'static str, fn(&[u8]), fn() -> Vec<Vec<u8>>);
 
 /// All of them.
 pub const READERS: [Reader; 7] = [
-    reader("scene", scene, || committed("scene")),
-    reader("obj", obj, || committed("obj")),
-    reader("dataset", dataset, dataset_seeds),
-    reader("model", model, model_seeds),
-    reader("gltf", gltf, || committed("gltf")),
-    reader("ply", |bytes| load("f.ply", bytes), || committed("ply")),
-    reader("stl", |bytes| load("f.stl", bytes), || committed("stl")),
+    ("scene", scene, || committed("scene")),
+    ("obj", obj, || committed("obj")),
+    ("dataset", dataset, dataset_seeds),
+    ("model", model, model_seeds),
+    ("gltf", gltf, || committed("gltf")),
+    ("ply", |bytes| load("f.ply", bytes), || committed("ply")),
+    ("stl", |bytes| load("f.stl", bytes), || committed("stl")),
 ];
 
 /// The files in `tests/seeds`, each with what its reader knows: polygons and strips, colours, textures, lights, timelines, sparse accessors.
@@ -131,24 +119,21 @@ const MANIFEST: &str = "_peelnet/manifest.json";
 fn dataset(bytes: &[u8]) {
     let (&which, contents) = bytes.split_first().unwrap_or((&0, &[]));
     let kind = usize::from(which) % 3;
-    let template = template(kind);
-    let files = &template.files;
-    let file = usize::from(which / 3) % files.len();
+    let files = template(kind);
+    let changed = usize::from(which / 3) % files.len();
     let folder = folder().join(format!("read-{}", FORMATS[kind]));
     let _ = fs::create_dir_all(folder.join("_peelnet"));
-    let mut manifest = template.manifest.clone();
-    for (i, (name, sound)) in files.iter().enumerate() {
-        if i == file {
-            fs::write(folder.join(name), contents).expect("writes");
+    for (k, (name, sound)) in files.iter().enumerate() {
+        let mut written = sound.clone();
+        if k == changed {
+            written = contents.to_vec();
+        } else if name == MANIFEST {
             // So that the length fits, and the contents are looked at.
-            let length = |n: usize| format!("\"bytes\": {n}");
-            manifest = manifest.replace(&length(sound.len()), &length(contents.len()));
-        } else {
-            fs::write(folder.join(name), sound).expect("writes");
+            let [from, to] =
+                [files[changed].1.len(), contents.len()].map(|n| format!("\"bytes\": {n}"));
+            written = String::from_utf8_lossy(sound).replace(&from, &to).into();
         }
-    }
-    if files[file].0 != MANIFEST {
-        fs::write(folder.join(MANIFEST), manifest).expect("writes");
+        fs::write(folder.join(name), written).expect("writes");
     }
     if let Ok(dataset) = Dataset::open(&folder) {
         // Either all rows are read, or an error ends them.
@@ -162,24 +147,18 @@ fn dataset(bytes: &[u8]) {
 fn dataset_seeds() -> Vec<Vec<u8>> {
     let mut seeds = Vec::new();
     for k in 0u8..3 {
-        for ((_, contents), file) in template(usize::from(k)).files.iter().zip(0u8..3) {
+        for ((_, contents), file) in template(usize::from(k)).iter().zip(0u8..3) {
             seeds.push([&[k + 3 * file], contents.as_slice()].concat());
         }
     }
     seeds
 }
 
-struct Template {
-    manifest: String,
-    /// Name and contents; the manifest first.
-    files: Vec<(String, Vec<u8>)>,
-}
-
 const FORMATS: [Format; 3] = [Format::Csv, Format::Npy, Format::Parquet];
 
-/// A small dataset of one of these formats.
-fn template(kind: usize) -> &'static Template {
-    static TEMPLATES: [OnceLock<Template>; 3] = [const { OnceLock::new() }; 3];
+/// The files of a small dataset of one of these formats, by name; the manifest first.
+fn template(kind: usize) -> &'static [(String, Vec<u8>)] {
+    static TEMPLATES: [OnceLock<Vec<(String, Vec<u8>)>>; 3] = [const { OnceLock::new() }; 3];
     TEMPLATES[kind].get_or_init(|| {
         let format = FORMATS[kind];
         let out = folder().join(format!("template-{format}"));
@@ -193,17 +172,15 @@ fn template(kind: usize) -> &'static Template {
         };
         synthetic(&options, &AtomicBool::new(false), &mut |_| {}).expect("a small dataset");
         let names = fs::read_dir(&out).expect("lists").flatten();
-        let mut names: Vec<String> = names
-            .map(|e| e.file_name().to_string_lossy().into_owned())
-            .filter(|name| !name.starts_with(['.', '_']))
-            .collect();
-        names.push(MANIFEST.to_owned());
-        names.sort_by_key(|name| (name != MANIFEST, name.clone()));
-        let read = |name: &String| fs::read(out.join(name)).expect("reads");
-        Template {
-            manifest: String::from_utf8_lossy(&read(&names[0])).into_owned(),
-            files: names.iter().map(|n| (n.clone(), read(n))).collect(),
-        }
+        let names = names.map(|e| e.file_name().to_string_lossy().into_owned());
+        let mut names: Vec<String> = names.filter(|name| !name.starts_with(['.', '_'])).collect();
+        names.sort();
+        names.insert(0, MANIFEST.to_owned());
+        let read = |name: String| {
+            let bytes = fs::read(out.join(&name)).expect("reads");
+            (name, bytes)
+        };
+        names.into_iter().map(read).collect()
     })
 }
 

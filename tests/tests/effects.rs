@@ -27,40 +27,61 @@ const fn needs(effect: Effect) -> Option<Effect> {
     }
 }
 
-/// Gives the first surface of a scene an effect; as far as it has one, so that it shows.
-fn add(effect: Effect, all: &mut Scene) {
+fn opaque(color: [f32; 3]) -> Material {
+    Material {
+        blend: false,
+        ..Material::unlit(color, 1.0)
+    }
+}
+
+/// Gives a scene an effect: its first surface, so that it shows, as far as it has one; or with values that change nothing.
+fn add(effect: Effect, all: &mut Scene, neutral: bool) {
+    let either = |shown: [f32; 3], unseen: f32| if neutral { [unseen; 3] } else { shown };
     let object = &mut all.objects[0];
     let material = &mut object.materials[0];
     match effect {
+        // Behind everything, of the background's colour.
+        Effect::Opaque if neutral => all.objects.push(wall(50.0, opaque(all.background))),
         Effect::Opaque => (material.alpha, material.blend) = (1.0, false),
         Effect::Culling => material.double_sided = false,
         Effect::Lighting | Effect::Pbr => {
-            material.lighting = match effect {
-                Effect::Pbr => Lighting::Pbr,
-                _ => Lighting::Phong,
+            let (kind, ambient) = match effect {
+                Effect::Pbr => (Lighting::Pbr, 0.03),
+                _ => (Lighting::Phong, 0.1),
             };
-            all.lights = vec![light(Vec3::new(1.0, 1.0, 0.0), [1.0; 3])];
+            material.lighting = kind;
+            if neutral {
+                // Radiance that is the colour: ambient light alone, of a colour that makes up for its share.
+                material.color = material.color.map(|c| c / ambient);
+            }
+            all.lights = vec![light(Vec3::new(1.0, 1.0, 0.0), either([1.0; 3], 0.0))];
         }
+        Effect::Cutout if neutral => all.objects[1].materials[0].alpha_cutoff = Some(0.5),
         Effect::Cutout => (material.alpha_cutoff, material.blend) = (Some(0.3), false),
-        Effect::Emission => material.emission = [0.2, 0.0, 0.1],
+        Effect::Emission => material.emission = either([0.2, 0.0, 0.1], 1e-9),
         Effect::LowResolution => all.transparency_scale = 0.5,
-        Effect::Transmission => material.transmission = [0.5; 3],
+        Effect::Transmission => material.transmission = either([0.5; 3], 1e-9),
         Effect::VertexColors => {
+            let [r, g, b] = either([0.5, 1.0, 0.25], 1.0);
             let mesh = Arc::make_mut(&mut object.mesh);
-            mesh.colors = vec![[0.5, 1.0, 0.25, 1.0]; mesh.positions.len()];
+            mesh.colors = vec![[r, g, b, 1.0]; mesh.positions.len()];
         }
-        Effect::Sun => {
-            all.lights = vec![Light {
-                source: Source::Toward(Vec3::Z),
-                ..light(Vec3::ZERO, [1.0; 3])
-            }];
-        }
+        Effect::Sun => all.lights.push(Light {
+            source: Source::Toward(Vec3::Z),
+            ..light(Vec3::ZERO, either([1.0; 3], 0.0))
+        }),
         Effect::Monochrome => {
             material.color = [0.6; 3];
             all.objects[1].materials[0].color = [0.3; 3];
             all.background = [0.1; 3];
         }
-        map => *map_of(&mut material.maps, map) = even([200, 150, 220, 255]),
+        map => {
+            *map_of(&mut material.maps, map) = even(match (neutral, map) {
+                (false, _) => [200, 150, 220, 255],
+                (true, Effect::NormalMap) => [128, 128, 255, 255],
+                (true, _) => [255; 4],
+            });
+        }
     }
 }
 
@@ -73,7 +94,7 @@ fn scene_with(effect: Option<Effect>) -> Scene {
     ];
     let mut all = scene("effects", [0.1, 0.2, 0.3], objects);
     for effect in [effect.and_then(needs), effect].into_iter().flatten() {
-        add(effect, &mut all);
+        add(effect, &mut all, false);
     }
     all
 }
@@ -163,53 +184,19 @@ fn what_is_not_called_for_is_not_there() {
 /// A scene, and the same with an effect that changes nothing.
 fn neutral(effect: Effect) -> [Scene; 2] {
     let mut plain = scene_with(needs(effect));
-    let opaque = Material {
-        blend: false,
-        ..Material::unlit([0.1, 0.9, 0.4], 1.0)
-    };
+    let mut with = plain.clone();
     match effect {
-        Effect::Cutout => plain.objects[1] = wall(5.0, opaque),
-        Effect::Monochrome => plain = scene_with(Some(effect)).without(effect),
+        Effect::Cutout => {
+            plain.objects[1] = wall(5.0, opaque([0.1, 0.9, 0.4]));
+            with = plain.clone();
+        }
+        Effect::Monochrome => {
+            with = scene_with(Some(effect));
+            plain = with.without(effect);
+        }
         _ => {}
     }
-    let mut with = plain.clone();
-    let material = &mut with.objects[0].materials[0];
-    match effect {
-        // Behind everything, of the background's colour.
-        Effect::Opaque => {
-            let material = Material {
-                blend: false,
-                ..Material::unlit(plain.background, 1.0)
-            };
-            with.objects.push(wall(50.0, material));
-        }
-        Effect::Culling => material.double_sided = false,
-        // Radiance that is the colour: ambient light alone, of a colour that makes up for its share.
-        Effect::Lighting | Effect::Pbr => {
-            let (kind, ambient) = match effect {
-                Effect::Pbr => (Lighting::Pbr, 0.03),
-                _ => (Lighting::Phong, 0.1),
-            };
-            material.lighting = kind;
-            material.color = material.color.map(|c| c / ambient);
-            with.lights.push(light(Vec3::ZERO, [0.0; 3]));
-        }
-        Effect::Cutout => with.objects[1].materials[0].alpha_cutoff = Some(0.5),
-        Effect::Emission => material.emission = [1e-9; 3],
-        Effect::Transmission => material.transmission = [1e-9; 3],
-        Effect::NormalMap => material.maps.normal = even([128, 128, 255, 255]),
-        map if Effect::MAPS.contains(&map) => *map_of(&mut material.maps, map) = even([255; 4]),
-        Effect::VertexColors => {
-            let mesh = Arc::make_mut(&mut with.objects[0].mesh);
-            mesh.colors = vec![[1.0; 4]; mesh.positions.len()];
-        }
-        Effect::Sun => with.lights.push(Light {
-            source: Source::Toward(Vec3::Y),
-            ..light(Vec3::ZERO, [0.0; 3])
-        }),
-        Effect::Monochrome => with = scene_with(Some(effect)),
-        _ => with.transparency_scale = 0.5,
-    }
+    add(effect, &mut with, true);
     [plain, with]
 }
 

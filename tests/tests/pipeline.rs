@@ -1,15 +1,13 @@
-//! Extraction to datasets: what they hold, in every format and by every way to peel, and what is refused.
+//! Extraction to datasets: what they hold, in every format and by every way to peel. Shards, repetition and what is refused are tested with
+//! the program.
 
 use peelnet_core::fragment::worked_example;
-use peelnet_dataset::{Column, Dataset, Format, Shard, Summary};
+use peelnet_dataset::{Column, Dataset, Format, FragmentBatch, Summary};
 use peelnet_gpu::Gpu;
-use peelnet_peel::{ExtractOptions, Peel, Views, extract};
+use peelnet_peel::{ExtractOptions, Peel, extract};
 use peelnet_scene::Scene;
 use peelnet_tests::{gpu, scene, soup, walls};
-use std::{
-    path::{Path, PathBuf},
-    sync::atomic::AtomicBool,
-};
+use std::{path::Path, sync::atomic::AtomicBool};
 
 fn options(out: &Path) -> ExtractOptions {
     ExtractOptions {
@@ -25,29 +23,18 @@ fn run(gpu: &Gpu, scenes: &[Scene], options: &ExtractOptions) -> peelnet_peel::E
     extract(gpu, scenes, options, &NEVER, &mut |_| {}).unwrap()
 }
 
-/// Two scenes of slanted panes, two views each.
-fn scenes() -> Vec<Scene> {
-    let one = |(name, seed)| {
+/// Two scenes of slanted panes, two views each; the second one has two effects.
+fn scenes() -> [Scene; 2] {
+    let mut scenes = [("first", 1), ("second", 2)].map(|(name, seed)| {
         let mut scene = scene(name, [0.0; 3], soup(seed, 12, 1, [2.0, 10.0]));
         let mut other = scene.views[0];
         other.position.x += 0.5;
         scene.views.push(other);
         scene
-    };
-    [("first", 1), ("second", 2)].map(one).to_vec()
-}
-
-fn files(folder: &Path) -> Vec<(String, Vec<u8>)> {
-    let paths = std::fs::read_dir(folder).unwrap();
-    let paths = paths.map(|e| e.unwrap().path());
-    let of_rows = |p: &PathBuf| p.is_file() && p.extension().is_some_and(|e| e != "json");
-    let named = |p: PathBuf| {
-        let name = p.file_name().unwrap().to_string_lossy().into_owned();
-        (name, std::fs::read(p).unwrap())
-    };
-    let mut all: Vec<_> = paths.filter(of_rows).map(named).collect();
-    all.sort();
-    all
+    });
+    let material = &mut scenes[1].objects[0].materials[0];
+    (material.emission, material.double_sided) = ([0.5, 0.0, 0.0], false);
+    scenes
 }
 
 /// The worked example in every pixel: its rows are known.
@@ -77,7 +64,8 @@ fn the_worked_example_as_rows() {
     assert!(columns.alpha_sum.iter().all(|&s| s == 2.4));
 }
 
-/// Recomputing from the rows gives what is stored, in every format and by every way to peel; rows are the same.
+/// Recomputing from the rows gives what is stored, in every format and by every way to peel; rows are the same. The effects that scenes
+/// need are recorded.
 #[test]
 fn sums_hold_and_formats_and_peels_agree() {
     let gpu = gpu();
@@ -97,6 +85,8 @@ fn sums_hold_and_formats_and_peels_agree() {
         };
         let report = run(&gpu, &scenes(), &options);
         assert_eq!(report.manifest.parts.len(), 8);
+        let effects = report.manifest.scenes.iter().map(|s| s.effects.clone());
+        assert!(effects.eq([vec![], vec!["culling", "emission"]]));
         let dataset = Dataset::open(&out).unwrap();
         dataset.verify().unwrap();
         let summary = Summary::of(&dataset).unwrap();
@@ -108,75 +98,6 @@ fn sums_hold_and_formats_and_peels_agree() {
             Some(other) => assert!(&rows == other, "{format}, {peel}"),
         }
     }
-}
-
-/// The same seed gives the same bytes, and shards put together are the whole.
-#[test]
-fn extraction_repeats_and_shards_add_up() {
-    let gpu = gpu();
-    let folder = tempfile::tempdir().unwrap();
-    let sampled = |out: &Path, shard| ExtractOptions {
-        pixels: 0.5,
-        shard,
-        ..options(out)
-    };
-    let at = |name: &str| folder.path().join(name);
-    let whole = run(&gpu, &scenes(), &sampled(&at("a"), None)).manifest;
-    let again = run(&gpu, &scenes(), &sampled(&at("b"), None)).manifest;
-    assert_eq!(files(&at("a")), files(&at("b")));
-    assert_eq!(whole.hash, again.hash);
-    for i in [2, 1, 3] {
-        let shard = Shard { index: i, of: 3 };
-        run(&gpu, &scenes(), &sampled(&at("c"), Some(shard)));
-    }
-    let merged = Dataset::open(at("c")).unwrap();
-    assert_eq!(merged.hash(), whole.hash);
-    assert_eq!(merged.rows(), whole.rows);
-}
-
-/// A dataset records the effects that its scenes needed.
-#[test]
-fn a_dataset_records_its_census() {
-    let gpu = gpu();
-    let folder = tempfile::tempdir().unwrap();
-    let out = folder.path().join("d");
-    let mut all = scenes();
-    all[1].objects[0].materials[0].emission = [0.5, 0.0, 0.0];
-    all[1].objects[0].materials[0].double_sided = false;
-    run(&gpu, &all, &options(&out));
-    let found = Dataset::open(&out).unwrap();
-    let scenes = found.manifest().scenes.iter();
-    let effects: Vec<_> = scenes.map(|s| s.effects.clone()).collect();
-    assert_eq!(effects, [vec![], vec!["culling", "emission"]]);
-}
-
-#[test]
-fn requests_that_make_no_sense_are_refused() {
-    let gpu = gpu();
-    let folder = tempfile::tempdir().unwrap();
-    let out = folder.path().join("d");
-    let refused = |scenes: &[Scene], options: &ExtractOptions| {
-        let refused = extract(&gpu, scenes, options, &NEVER, &mut |_| {});
-        refused.unwrap_err().to_string()
-    };
-    let all = scenes();
-    let many = ExtractOptions {
-        views: Views::First(3),
-        ..options(&out)
-    };
-    assert!(refused(&all, &many).contains("2 of the 3 views"));
-    let twice = [all[0].clone(), all[0].clone()];
-    assert!(refused(&twice, &options(&out)).contains("rename one"));
-    let none = ExtractOptions {
-        pixels: 0.0,
-        ..options(&out)
-    };
-    assert!(refused(&all, &none).contains("above 0"));
-    // A dataset's transmittance is one number.
-    let mut stained = all[0].clone();
-    stained.objects[0].materials[0].transmission = [0.9, 0.1, 0.2];
-    assert!(refused(&[stained], &options(&out)).contains("transmission_color"));
-    assert!(!out.exists());
 }
 
 /// Batches in memory hold the rows of the dataset, in its order; one that is dropped early ends its thread.
@@ -191,12 +112,12 @@ fn batches_hold_the_rows_of_the_dataset() {
     };
     run(&gpu, &scenes, &options);
     let dataset = Dataset::open(&options.out).unwrap();
-    let mut written = peelnet_dataset::FragmentBatch::default();
+    let mut written = FragmentBatch::default();
     for batch in dataset.batches(1 << 16) {
         let batch = batch.unwrap();
         written.extend_from(&batch, 0..batch.len());
     }
-    let mut found = peelnet_dataset::FragmentBatch::default();
+    let mut found = FragmentBatch::default();
     for batch in peelnet_peel::batches(&gpu, &scenes, &options).unwrap() {
         let batch = batch.unwrap();
         found.extend_from(&batch, 0..batch.len());

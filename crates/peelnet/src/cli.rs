@@ -3,10 +3,11 @@
 #[cfg(test)]
 mod tests;
 
-use crate::values::{fraction, methods, one_of, positive, samples, size, views};
+use crate::values::{SAMPLES, case, fraction, methods, one_of, positive, size, views};
 use clap::{Args, Parser, Subcommand};
 use peelnet::{LANGUAGES, PRECISIONS, SCHEDULES, SPLITS};
 use peelnet_dataset::{Format, Shard, SplitBy};
+use peelnet_eval::stress::Case;
 use peelnet_export::{Language, Precision};
 use peelnet_gpu::AdapterRequest;
 use peelnet_model::Recipe;
@@ -40,15 +41,12 @@ An output replaces only a file of its own kind, any file with --force, never a l
 NO_COLOR switches colours off."
 )]
 pub struct Cli {
-    /// Flags of every command.
     #[command(flatten)]
     pub global: Global,
-    /// The command.
     #[command(subcommand)]
     pub command: Command,
 }
 
-/// Flags of every command.
 #[derive(Clone, Debug, Args)]
 pub struct Global {
     /// The GPU to use: part of an adapter's name, or "software"
@@ -71,7 +69,6 @@ pub struct Global {
     pub force: bool,
 }
 
-/// Every command.
 #[derive(Debug, Subcommand)]
 pub enum Command {
     /// Extract, train, export and compare in one command
@@ -100,7 +97,6 @@ pub enum Command {
     Doctor,
 }
 
-/// `peelnet run`.
 #[derive(Clone, Debug, Args)]
 #[command(after_help = "Examples:
   peelnet run --out out/demo              the shipped sixteen-model scenes, in minutes without a GPU
@@ -133,7 +129,6 @@ pub struct RunArgs {
     pub seed: u64,
 }
 
-/// `peelnet extract`.
 #[derive(Clone, Debug, Args)]
 #[command(after_help = "Examples:
   peelnet extract sixteen-050 --out d
@@ -191,7 +186,6 @@ pub struct ExtractArgs {
     pub resume: bool,
 }
 
-/// `peelnet seal`.
 #[derive(Clone, Debug, Args)]
 #[command(after_help = "Examples:
   peelnet seal d
@@ -205,7 +199,6 @@ pub struct SealArgs {
     pub dataset: PathBuf,
 }
 
-/// `peelnet train`.
 #[derive(Clone, Debug, Args)]
 #[command(after_help = "Examples:
   peelnet train d --out m.safetensors
@@ -268,7 +261,6 @@ pub struct TrainArgs {
     pub patience: Option<u32>,
 }
 
-/// `peelnet export`.
 #[derive(Clone, Debug, Args)]
 #[command(after_help = "Examples:
   peelnet export m.safetensors --out weight.wgsl
@@ -305,7 +297,6 @@ const LAYER_FORMULAS: &[(&str, LayerFormula)] = &[
     ("printed", LayerFormula::Printed),
 ];
 
-/// `peelnet render`.
 #[derive(Clone, Debug, Args)]
 #[command(after_help = RENDER_EXAMPLES, after_long_help = format!("{RENDER_EXAMPLES}\n\n{}", crate::methods_text::methods()))]
 pub struct RenderArgs {
@@ -328,7 +319,7 @@ pub struct RenderArgs {
     #[arg(long, value_name = "WxH", value_parser = size, default_value = "1024x768")]
     pub size: [u32; 2],
     /// Samples a pixel: 1, or 4 where multisampling has them; each is composited by itself. A frame of 4 is drawn four times
-    #[arg(long, value_name = "1|4", default_value_t = 1, value_parser = samples, conflicts_with = "highlight")]
+    #[arg(long, value_name = "1|4", default_value_t = 1, value_parser = one_of(SAMPLES), conflicts_with = "highlight")]
     pub samples: u32,
     /// Time in the scene's timeline; material values are interpolated between its states
     #[arg(long, value_name = "T", allow_negative_numbers = true)]
@@ -345,7 +336,6 @@ pub struct RenderArgs {
     pub layers: LayerFormula,
 }
 
-/// `peelnet view`.
 #[derive(Clone, Debug, Args)]
 #[command(after_help = "Examples:
   peelnet view                                           a shipped scene; drop files of your own onto the window
@@ -395,7 +385,6 @@ pub struct ViewArgs {
     pub screenshot: Option<PathBuf>,
 }
 
-/// `peelnet bench`.
 #[derive(Clone, Debug, Args)]
 #[command(after_help = "Examples:
   peelnet bench cups --out out/bench
@@ -458,7 +447,7 @@ pub struct BenchArgs {
     #[arg(long, value_name = "WxH", value_parser = size, default_value = "1024x768")]
     pub size: [u32; 2],
     /// Samples a pixel, 1 or 4, of all methods and of the exact image; a frame of 4 is drawn four times
-    #[arg(long, value_name = "1|4", default_value_t = 1, value_parser = samples, conflicts_with_all = ["scaling", "effects"])]
+    #[arg(long, value_name = "1|4", default_value_t = 1, value_parser = one_of(SAMPLES), conflicts_with_all = ["scaling", "effects"])]
     pub samples: u32,
     /// Views of each scene
     #[arg(long, value_name = "N|all", default_value = "all", value_parser = views)]
@@ -468,7 +457,6 @@ pub struct BenchArgs {
     pub resume: bool,
 }
 
-/// `peelnet stress`.
 #[derive(Clone, Debug, Args)]
 #[command(after_help = "Examples:
   peelnet stress                                        every method, with the shipped networks
@@ -491,14 +479,13 @@ pub struct StressArgs {
     )]
     pub models: Vec<PathBuf>,
     /// Names of cases, separated by commas [default: all]
-    #[arg(long, value_name = "CASE,CASE", value_delimiter = ',')]
-    pub cases: Vec<String>,
+    #[arg(long, value_name = "CASE,CASE", value_delimiter = ',', value_parser = case())]
+    pub cases: Vec<&'static Case>,
     /// Folder for the results and for pictures of failures
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
 }
 
-/// `peelnet recommend`.
 #[derive(Clone, Debug, Args)]
 #[command(after_help = "Examples:
   peelnet recommend cups --budget-ms 30 --results out/bench
@@ -541,7 +528,6 @@ pub struct RecommendArgs {
     pub frames: u32,
 }
 
-/// `peelnet inspect`.
 #[derive(Clone, Debug, Args)]
 #[command(after_help = "Examples:
   peelnet inspect sixteen-050

@@ -16,9 +16,6 @@ static STOP: AtomicBool = AtomicBool::new(false);
 static SIGNAL: AtomicI32 = AtomicI32::new(0);
 
 /// Installs the handlers and gives the flag that long loops look at.
-///
-/// # Errors
-/// If the system refuses, which it does not when this is called once.
 pub fn install() -> std::io::Result<&'static AtomicBool> {
     listen()?;
     Ok(&STOP)

@@ -1,6 +1,7 @@
 //! Values of flags that have a syntax of their own.
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
+use peelnet_eval::stress::{CASES, Case};
 use peelnet_render::MethodSpec;
 
 /// `WxH`: the size of a frame in pixels.
@@ -34,13 +35,7 @@ pub fn fraction(text: &str) -> Result<f64, String> {
 }
 
 /// Samples a pixel.
-pub fn samples(text: &str) -> Result<u32, String> {
-    match text {
-        "1" => Ok(1),
-        "4" => Ok(4),
-        _ => Err(format!("a pixel has 1 or 4 samples, not '{text}'")),
-    }
-}
+pub const SAMPLES: &[(&str, u32)] = &[("1", 1), ("4", 4)];
 
 /// A positive number.
 pub fn positive(text: &str) -> Result<f64, String> {
@@ -78,6 +73,14 @@ pub fn one_of<T: Copy + Send + Sync + 'static>(
     PossibleValuesParser::new(names.iter().map(|(name, _)| *name)).map(|name: String| {
         let found = names.iter().find(|(n, _)| *n == name);
         found.expect("the parser takes these names alone").1
+    })
+}
+
+/// A stress case, by its name.
+pub fn case() -> impl TypedValueParser<Value = &'static Case> {
+    PossibleValuesParser::new(CASES.iter().map(|case| case.id)).map(|id: String| {
+        let found = CASES.iter().find(|case| case.id == id);
+        found.expect("the parser takes these names alone")
     })
 }
 

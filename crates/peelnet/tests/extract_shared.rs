@@ -17,7 +17,7 @@ fn fails(folder: &Folder, line: &str, words: &[&str]) {
 fn shards_of_processes_are_the_whole() {
     let scene = format!("{SCENE}[orbit]\nviews = 2\n");
     let folder = Folder::new(&[("s.toml", &scene), ("elsewhere/s.toml", &scene)]);
-    let line = "extract s.toml --size 32x24 --augment 2 --out";
+    let line = "extract s.toml --size 32x24 --augment 2 --pixels 0.5 --out";
     let whole = folder.json(&format!("{line} whole"));
     let found = (&whole["sealed"], &whole["parts"]);
     assert_eq!(found, (&true.into(), &6.into()));

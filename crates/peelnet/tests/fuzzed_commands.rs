@@ -45,36 +45,19 @@ const VALUES: &str =
 const CURVES: &str =
     "loss.csv curve.svg table.csv new.svg d/_peelnet/manifest.json m.safetensors -";
 
-/// A command with flags that keep it short, its inputs, and flags that get a value.
-const LINES: [(&str, &str, &str); 11] = [
-    (
-        "render --size 8x8",
-        "s.toml link.toml cups",
-        "--method --view --time --highlight",
-    ),
-    (
-        "extract --size 8x8",
-        "s.toml cups",
-        "--views --format --pixels --augment --seed --shard",
-    ),
-    ("extract --synthetic 30", "", "--format --seed"),
-    (
-        "train --epochs 1",
-        "d",
-        "--recipe --batch --hidden --max-rows --patience --seed",
-    ),
-    ("export", "m.safetensors n", "--lang --precision"),
-    (
-        "bench --methods wboit-eq9 --frames 0 --size 8x8",
-        "s.toml",
-        "--views --models",
-    ),
-    ("run --size 8x8 --rows 100 --epochs 1", "s.toml", "--seed"),
-    ("inspect", "s.toml d m.safetensors cups", ""),
-    ("seal", "d g", ""),
-    ("stress --cases deep --methods wboit-eq9", "", "--models"),
-    ("doctor", "", "--adapter"),
-];
+/// Commands with flags that keep them short, their inputs, and flags that get a value.
+const LINES: &str = "
+    render --size 8x8 | s.toml link.toml cups | --method --view --time --highlight
+    extract --size 8x8 | s.toml cups | --views --format --pixels --augment --seed --shard
+    extract --synthetic 30 | | --format --seed
+    train --epochs 1 | d | --recipe --batch --hidden --max-rows --patience --seed
+    export | m.safetensors n | --lang --precision
+    bench --methods wboit-eq9 --frames 0 --size 8x8 | s.toml | --views --models
+    run --size 8x8 --rows 100 --epochs 1 | s.toml | --seed
+    inspect | s.toml d m.safetensors cups |
+    seal | d g |
+    stress --cases deep --methods wboit-eq9 | | --models
+    doctor | | --adapter";
 
 fn pick(random: &mut Random, from: &str) -> String {
     let all: Vec<&str> = from.split(' ').collect();
@@ -138,7 +121,9 @@ fn folder(ours: &Folder, random: &mut Random) -> Folder {
 
 /// A command line, and what it names as outputs.
 fn line(random: &mut Random) -> (Vec<String>, Vec<String>) {
-    let (start, inputs, flags) = LINES[random.below(LINES.len())];
+    let lines: Vec<&str> = LINES.trim().lines().collect();
+    let mut fields = lines[random.below(lines.len())].split('|').map(str::trim);
+    let [start, inputs, flags] = [(); 3].map(|()| fields.next().unwrap());
     let mut line: Vec<String> = start.split(' ').map(str::to_owned).collect();
     let command = line[0].clone();
     let (mut more, mut outputs) = (Vec::new(), Vec::new());

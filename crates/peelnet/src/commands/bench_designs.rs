@@ -1,16 +1,13 @@
 //! `peelnet bench --designs`: what designs of slabs are worth.
 
-use super::{Context, bench::report, command_line, json_path};
+use super::{Context, bench::report, json_path};
 use crate::cli::BenchArgs;
 use crate::progress::Bar;
 use peelnet::Failure;
 use peelnet_dataset::{Dataset, SplitBy, Subset};
-use peelnet_eval::{
-    Machine,
-    designs::{
-        self, ANCHORED, DESIGNS, Designs, Entry, KBUFFER, MOMENTS, Measured, Reference, Row, Score,
-        View,
-    },
+use peelnet_eval::designs::{
+    self, ANCHORED, DESIGNS, Designs, Entry, KBUFFER, MOMENTS, Measured, Reference, Row, Score,
+    View,
 };
 use peelnet_files::{Unfinished, printable, shown};
 use peelnet_model::{Model, Recipe};
@@ -88,8 +85,7 @@ pub(super) fn run(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure
         references: judge.references(),
         rows,
     };
-    let results = Results::new(Machine::of(&gpu), command_line(), found);
-    report(context, &args.out, &results, || results.table().plain())
+    report(context, &gpu, &args.out, found, |r| r.table().plain())
 }
 
 fn config(entry: &Entry, args: &BenchArgs) -> Config {
