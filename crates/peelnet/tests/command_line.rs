@@ -94,7 +94,7 @@ const REFUSED: &str = "
     1 | render texture.toml --out a.png | cut.png
     1 | render nan.toml --out a.png | nan.obj:5 & 'v 0 nan 0' holds no finite numbers & repair
     1 | render planes.toml --out a.png | planes.toml & camera.near & below far
-    1 | train cut --out m | cut/fragments-00000-synthetic-v1.csv & bytes
+    1 | train cut --out m | cut/fragments-00000-synthetic-v0.csv & bytes
     1 | inspect text.safetensors | text.safetensors
     1 | inspect shape.safetensors | shape.safetensors
     1 | export empty.safetensors --out w.wgsl | empty.safetensors
@@ -208,7 +208,7 @@ fn folder() -> Folder {
     folder.prints("extract two.toml --size 24x16 --out own");
     folder.prints("extract orbit.toml --size 16x12 --out shard --shard 1/2");
     folder.prints("extract --synthetic 40 --format csv --out cut");
-    let rows = "cut/fragments-00000-synthetic-v1.csv";
+    let rows = "cut/fragments-00000-synthetic-v0.csv";
     let whole = folder.read(rows);
     folder.write(rows, &whole[..whole.len() / 2]);
     folder.write_model("m.safetensors", peelnet::Recipe::SMALL);
