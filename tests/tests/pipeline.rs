@@ -1,26 +1,16 @@
 //! Extraction to datasets: what they hold, in every format and by every way to peel. Shards, repetition and what is refused are tested with
 //! the program.
 
-use peelnet_core::fragment::worked_example;
 use peelnet_dataset::{Column, Dataset, Format, FragmentBatch, Summary};
 use peelnet_gpu::Gpu;
-use peelnet_peel::{ExtractOptions, Peel, extract};
+use peelnet_peel::{ExtractOptions, ExtractReport, Peel, extract};
 use peelnet_scene::Scene;
-use peelnet_tests::{gpu, scene, soup, walls};
-use std::{path::Path, sync::atomic::AtomicBool};
+use peelnet_tests::{gpu, scene, soup};
+use std::sync::atomic::AtomicBool;
 
-fn options(out: &Path) -> ExtractOptions {
-    ExtractOptions {
-        size: [40, 30],
-        seed: 5,
-        ..ExtractOptions::new(out)
-    }
-}
-
-static NEVER: AtomicBool = AtomicBool::new(false);
-
-fn run(gpu: &Gpu, scenes: &[Scene], options: &ExtractOptions) -> peelnet_peel::ExtractReport {
-    extract(gpu, scenes, options, &NEVER, &mut |_| {}).unwrap()
+fn run(gpu: &Gpu, scenes: &[Scene], options: &ExtractOptions) -> ExtractReport {
+    let stop = AtomicBool::new(false);
+    extract(gpu, scenes, options, &stop, &mut |_| {}).unwrap()
 }
 
 /// Two scenes of slanted panes, two views each; the second one has two effects.
@@ -35,33 +25,6 @@ fn scenes() -> [Scene; 2] {
     let material = &mut scenes[1].objects[0].materials[0];
     (material.emission, material.double_sided) = ([0.5, 0.0, 0.0], false);
     scenes
-}
-
-/// The worked example in every pixel: its rows are known.
-#[test]
-fn the_worked_example_as_rows() {
-    let gpu = gpu();
-    let folder = tempfile::tempdir().unwrap();
-    let out = folder.path().join("d");
-    let small = ExtractOptions {
-        size: [3, 2],
-        ..options(&out)
-    };
-    let report = run(&gpu, &[walls(&worked_example(), [0.0; 3])], &small);
-    let found = (report.manifest.rows, report.lost, report.coplanar);
-    assert_eq!(found, (24, 0, 0));
-    let dataset = Dataset::open(&out).unwrap();
-    let columns = [Column::Transmittance, Column::LinearDepth, Column::AlphaSum];
-    let columns = dataset.read_columns(&columns).unwrap();
-    for pixel in columns.transmittance.chunks(4) {
-        assert_eq!(pixel, [1.0, 0.5, 0.25, 0.125]);
-    }
-    for pixel in columns.linear_depth.chunks(4) {
-        for (z, want) in pixel.iter().zip([1.0f32, 2.0, 4.0, 8.0]) {
-            assert!((z - want).abs() <= 16.0 * f32::EPSILON * want);
-        }
-    }
-    assert!(columns.alpha_sum.iter().all(|&s| s == 2.4));
 }
 
 /// Recomputing from the rows gives what is stored, in every format and by every way to peel; rows are the same. The effects that scenes
@@ -80,8 +43,10 @@ fn sums_hold_and_formats_and_peels_agree() {
         let options = ExtractOptions {
             format,
             peel,
+            size: [40, 30],
+            seed: 5,
             augment: 1,
-            ..options(&out)
+            ..ExtractOptions::new(&out)
         };
         let report = run(&gpu, &scenes(), &options);
         assert_eq!(report.manifest.parts.len(), 8);

@@ -3,11 +3,11 @@
 #[cfg(test)]
 mod tests;
 
-use crate::values::{SAMPLES, case, fraction, methods, one_of, positive, size, views};
+use crate::values::{SAMPLES, fraction, methods, one_of, positive, size, views};
 use clap::{Args, Parser, Subcommand};
 use peelnet::{LANGUAGES, PRECISIONS, SCHEDULES, SPLITS};
 use peelnet_dataset::{Format, Shard, SplitBy};
-use peelnet_eval::stress::Case;
+use peelnet_eval::stress::{CASES, Case};
 use peelnet_export::{Language, Precision};
 use peelnet_gpu::AdapterRequest;
 use peelnet_model::Recipe;
@@ -229,7 +229,7 @@ pub struct TrainArgs {
     #[arg(long, value_name = "X", value_parser = positive)]
     pub lr: Option<f64>,
     /// Learning rate over the run: constant, or one cycle that rises for a fifth of the steps and falls to nothing [default: the recipe's]
-    #[arg(long, value_name = "SCHEDULE", value_parser = one_of(SCHEDULES))]
+    #[arg(long, value_name = "SCHEDULE", value_parser = one_of(SCHEDULES.to_vec()))]
     pub schedule: Option<Schedule>,
     /// What small, medium and large minimise: image, contributions, weighted-transmittance or transmittance
     #[arg(long, value_name = "LOSS", default_value = "image")]
@@ -254,7 +254,7 @@ pub struct TrainArgs {
     #[arg(long, value_name = "N", requires = "stream", default_value_t = peelnet_train::DEFAULT_BUFFER_ROWS)]
     pub buffer_rows: u64,
     /// What stays together when rows are set aside for testing: scenes (one scene alone is split by pixel), or pixels of all scenes alike
-    #[arg(long, value_name = "BY", default_value = "scene", value_parser = one_of(SPLITS))]
+    #[arg(long, value_name = "BY", default_value = "scene", value_parser = one_of(SPLITS.to_vec()))]
     pub split: SplitBy,
     /// Stop after N epochs without a lower held-out loss and keep the best
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
@@ -276,10 +276,10 @@ pub struct ExportArgs {
     #[arg(long, value_name = "FILE")]
     pub out: PathBuf,
     /// Shading language: WebGPU's WGSL, GLSL ES 3.00 (WebGL 2), GLSL 4.50 (OpenGL, Vulkan), HLSL (shader model 6.0) or MSL (Metal 2.4)
-    #[arg(long, default_value = "wgsl", value_parser = one_of(LANGUAGES))]
+    #[arg(long, default_value = "wgsl", value_parser = one_of(LANGUAGES.to_vec()))]
     pub lang: Language,
     /// Arithmetic of the function, 32-bit or 16-bit floats
-    #[arg(long, default_value = "f32", value_parser = one_of(PRECISIONS))]
+    #[arg(long, default_value = "f32", value_parser = one_of(PRECISIONS.to_vec()))]
     pub precision: Precision,
 }
 
@@ -292,7 +292,7 @@ const RENDER_EXAMPLES: &str = "Examples:
 IMAGE by its ending: .png (sRGB), .exr (linear f32), .npy (linear f32, H x W x 4 with coverage).
 A learned method without --model uses the shipped model.";
 
-const LAYER_FORMULAS: &[(&str, LayerFormula)] = &[
+const LAYER_FORMULAS: [(&str, LayerFormula); 2] = [
     ("front", LayerFormula::Front),
     ("printed", LayerFormula::Printed),
 ];
@@ -479,7 +479,7 @@ pub struct StressArgs {
     )]
     pub models: Vec<PathBuf>,
     /// Names of cases, separated by commas [default: all]
-    #[arg(long, value_name = "CASE,CASE", value_delimiter = ',', value_parser = case())]
+    #[arg(long, value_name = "CASE,CASE", value_delimiter = ',', value_parser = one_of(CASES.iter().map(|case| (case.id, case))))]
     pub cases: Vec<&'static Case>,
     /// Folder for the results and for pictures of failures
     #[arg(long, value_name = "DIR")]

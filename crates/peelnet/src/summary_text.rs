@@ -126,10 +126,4 @@ mod tests {
             assert_eq!(text.contains(&"#".repeat(40)), lines > 0, "{text}");
         }
     }
-
-    #[test]
-    fn figures() {
-        let found = [12.0, 0.25, 1.5e-8].map(figure);
-        assert_eq!(found, ["12", "0.25000", "1.500e-8"]);
-    }
 }

@@ -1,7 +1,6 @@
 //! Values of flags that have a syntax of their own.
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use peelnet_eval::stress::{CASES, Case};
 use peelnet_render::MethodSpec;
 
 /// `WxH`: the size of a frame in pixels.
@@ -35,7 +34,7 @@ pub fn fraction(text: &str) -> Result<f64, String> {
 }
 
 /// Samples a pixel.
-pub const SAMPLES: &[(&str, u32)] = &[("1", 1), ("4", 4)];
+pub const SAMPLES: [(&str, u32); 2] = [("1", 1), ("4", 4)];
 
 /// A positive number.
 pub fn positive(text: &str) -> Result<f64, String> {
@@ -66,21 +65,14 @@ pub fn methods(text: &str) -> Result<Option<Vec<MethodSpec>>, String> {
     methods.map(Some).map_err(|e| e.to_string())
 }
 
-/// One of the names in a table.
+/// The value of one of these names.
 pub fn one_of<T: Copy + Send + Sync + 'static>(
-    names: &'static [(&'static str, T)],
+    values: impl IntoIterator<Item = (&'static str, T)>,
 ) -> impl TypedValueParser<Value = T> {
-    PossibleValuesParser::new(names.iter().map(|(name, _)| *name)).map(|name: String| {
-        let found = names.iter().find(|(n, _)| *n == name);
-        found.expect("the parser takes these names alone").1
-    })
-}
-
-/// A stress case, by its name.
-pub fn case() -> impl TypedValueParser<Value = &'static Case> {
-    PossibleValuesParser::new(CASES.iter().map(|case| case.id)).map(|id: String| {
-        let found = CASES.iter().find(|case| case.id == id);
-        found.expect("the parser takes these names alone")
+    let (names, values): (Vec<&str>, Vec<T>) = values.into_iter().unzip();
+    PossibleValuesParser::new(names.clone()).map(move |name: String| {
+        let found = names.iter().position(|known| *known == name);
+        values[found.expect("the parser takes these names alone")]
     })
 }
 

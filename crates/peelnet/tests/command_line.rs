@@ -306,7 +306,6 @@ fn the_vase_shows_its_layers_and_its_age() {
     let mut pictures: Vec<Vec<u8>> = Vec::new();
     for (flags, method) in [
         ("--highlight 0 --time 0", "layer 0"),
-        ("--highlight 1 --time 40", "layer 1"),
         ("--highlight 1 --time 55 --increasing", "layer 1"),
         ("--time 55", "abuffer"),
         (

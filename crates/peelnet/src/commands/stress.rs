@@ -6,7 +6,7 @@ use crate::progress::Bar;
 use peelnet::Failure;
 use peelnet_eval::{
     EvalError, Machine,
-    stress::{CASES, Case, Outcome, Stressed, Subject, stress},
+    stress::{CASES, Outcome, Stressed, Subject, stress},
 };
 use peelnet_files::shown;
 use peelnet_report::Results;
@@ -14,11 +14,9 @@ use serde_json::json;
 use std::sync::atomic::Ordering;
 
 pub(super) fn run(context: &Context<'_>, args: &StressArgs) -> Result<(), Failure> {
-    let all_cases: Vec<&Case> = CASES.iter().collect();
-    let cases = if args.cases.is_empty() {
-        &all_cases
-    } else {
-        &args.cases
+    let cases = match args.cases.clone() {
+        none if none.is_empty() => CASES.iter().collect(),
+        cases => cases,
     };
     let mut outputs = context.outputs(&args.models);
     if let Some(out) = &args.out {
