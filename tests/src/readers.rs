@@ -18,7 +18,11 @@ pub type Reader = (&'static str, fn(&[u8]), fn() -> Vec<Vec<u8>>);
 
 /// All of them.
 pub const READERS: [Reader; 7] = [
-    ("scene", scene, || committed("scene")),
+    (
+        "scene",
+        |bytes| load("s.toml", bytes),
+        || committed("scene"),
+    ),
     ("obj", obj, || committed("obj")),
     ("dataset", dataset, dataset_seeds),
     ("model", model, model_seeds),
@@ -39,35 +43,25 @@ fn committed(name: &str) -> Vec<Vec<u8>> {
     paths.into_iter().map(read).collect()
 }
 
-/// A folder of this process that is removed with it.
+/// A folder of this process that is removed with it. Of the files that a scene or a mesh may name it has `a.obj` and `a.png`.
 fn folder() -> &'static Path {
     static FOLDER: OnceLock<TempDir> = OnceLock::new();
-    FOLDER
-        .get_or_init(|| tempfile::tempdir().expect("a temporary folder"))
-        .path()
+    let folder = FOLDER.get_or_init(|| {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n";
+        fs::write(folder.path().join("a.obj"), triangle).expect("writes");
+        let texels = [[255, 0, 0, 128], [0, 255, 0, 255]].concat();
+        let image = image::RgbaImage::from_raw(2, 1, texels).expect("two texels");
+        image.save(folder.path().join("a.png")).expect("encodes");
+        folder
+    });
+    folder.path()
 }
 
 fn put(name: &str, bytes: &[u8]) -> PathBuf {
     let path = folder().join(name);
     fs::write(&path, bytes).expect("the temporary folder can be written");
     path
-}
-
-/// The image as a file's bytes.
-fn image() -> Vec<u8> {
-    let texture = [[255, 0, 0, 128], [0, 255, 0, 255]].concat();
-    let mut bytes = std::io::Cursor::new(Vec::new());
-    let image = image::RgbaImage::from_raw(2, 1, texture).expect("two texels");
-    let written = image.write_to(&mut bytes, image::ImageFormat::Png);
-    written.map(|()| bytes.into_inner()).expect("encodes")
-}
-
-/// A scene file; the files that it may name do not exist, but for `a.obj` and `a.png`.
-fn scene(bytes: &[u8]) {
-    let triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n";
-    put("a.obj", triangle.as_bytes());
-    put("a.png", &image());
-    load("s.toml", bytes);
 }
 
 /// A file of this name; what the reader lets through can be drawn.
@@ -108,7 +102,6 @@ fn obj(bytes: &[u8]) {
     let mut parts = bytes.splitn(2, |b| *b == 0);
     let mesh = parts.next().unwrap_or_default();
     put("m.mtl", parts.next().unwrap_or_default());
-    put("a.png", &image());
     load("f.obj", mesh);
 }
 
@@ -120,21 +113,15 @@ fn dataset(bytes: &[u8]) {
     let (&which, contents) = bytes.split_first().unwrap_or((&0, &[]));
     let kind = usize::from(which) % 3;
     let files = template(kind);
-    let changed = usize::from(which / 3) % files.len();
-    let folder = folder().join(format!("read-{}", FORMATS[kind]));
-    let _ = fs::create_dir_all(folder.join("_peelnet"));
-    for (k, (name, sound)) in files.iter().enumerate() {
-        let mut written = sound.clone();
-        if k == changed {
-            written = contents.to_vec();
-        } else if name == MANIFEST {
-            // So that the length fits, and the contents are looked at.
-            let [from, to] =
-                [files[changed].1.len(), contents.len()].map(|n| format!("\"bytes\": {n}"));
-            written = String::from_utf8_lossy(sound).replace(&from, &to).into();
-        }
-        fs::write(folder.join(name), written).expect("writes");
-    }
+    let (name, sound) = &files[usize::from(which / 3) % files.len()];
+    let (_, manifest) = &files[0];
+    let folder = template_folder(kind);
+    let write = |name: &str, bytes: &[u8]| fs::write(folder.join(name), bytes).expect("writes");
+    // So that the length fits, and the contents are looked at.
+    let [from, to] = [sound.len(), contents.len()].map(|n| format!("\"bytes\": {n}"));
+    let adapted = String::from_utf8_lossy(manifest).replace(&from, &to);
+    write(MANIFEST, adapted.as_bytes());
+    write(name, contents);
     if let Ok(dataset) = Dataset::open(&folder) {
         // Either all rows are read, or an error ends them.
         let rows: Result<Vec<usize>, _> = dataset.batches(64).map(|b| b.map(|b| b.len())).collect();
@@ -142,6 +129,8 @@ fn dataset(bytes: &[u8]) {
             assert_eq!(rows.iter().sum::<usize>() as u64, dataset.rows());
         }
     }
+    write(MANIFEST, manifest);
+    write(name, sound);
 }
 
 fn dataset_seeds() -> Vec<Vec<u8>> {
@@ -156,16 +145,19 @@ fn dataset_seeds() -> Vec<Vec<u8>> {
 
 const FORMATS: [Format; 3] = [Format::Csv, Format::Npy, Format::Parquet];
 
+fn template_folder(kind: usize) -> PathBuf {
+    folder().join(format!("template-{}", FORMATS[kind]))
+}
+
 /// The files of a small dataset of one of these formats, by name; the manifest first.
 fn template(kind: usize) -> &'static [(String, Vec<u8>)] {
     static TEMPLATES: [OnceLock<Vec<(String, Vec<u8>)>>; 3] = [const { OnceLock::new() }; 3];
     TEMPLATES[kind].get_or_init(|| {
-        let format = FORMATS[kind];
-        let out = folder().join(format!("template-{format}"));
+        let out = template_folder(kind);
         let options = SyntheticOptions {
             out: out.clone(),
             lists: 12,
-            format,
+            format: FORMATS[kind],
             seed: 3,
             resume: false,
             command: "test".into(),
