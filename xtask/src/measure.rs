@@ -7,58 +7,36 @@ use crate::{
 };
 use std::{fs, path::Path, time::Instant};
 
-/// A command of peelnet whose results are kept: its name, the command without `--out`, in which names in angle brackets stand for what
-/// [`filled`] puts there, and the files of its output that are kept. None: what it prints is, as JSON.
-type Step = (&'static str, &'static str, &'static str);
-
 /// Scenes that choose which setting stands for a family of methods; none of them is in a table.
 const VALIDATION_SCENES: [&str; 3] = ["intersecting", "sixteen-050", "sixteen-random-color"];
 
 /// One or two of each family: sixty frames of sixty settings would take an hour.
 const PATH_METHODS: &str = "abuffer,painter-object,painter-triangle,wboit-eq9,mboit4,mboit6,wavelet-3:bounds=pixel,bins-8,avboit,kbuffer-4,stochastic-16,deep-thesis,nmt,dfaoit,deep-anchored-medium,deep-small,deep-medium,deep-large";
 
-const STEPS: [Step; 11] = [
-    ("stress", "stress", "stress.csv.xz stress.md"),
-    (
-        "held-out",
-        "bench <held-out> --size 512x384 --views 2 --frames 3",
-        "results.json.xz table.md pareto.svg pareto-mean.svg",
-    ),
-    (
-        "validation",
-        "bench <validation> --size 512x384 --views 1 --frames 3",
-        "results.json.xz table.md",
-    ),
-    (
-        "path",
-        "bench sixteen-held smoke-held --path --size 256x192 --methods <path>",
-        "path.csv path.md path-error.svg path-change.svg",
-    ),
-    (
-        "samples",
-        "bench cups-held foliage-held --samples 4 --size 256x192 --views 1 --frames 3 --methods <path>",
-        "table.md",
-    ),
-    (
-        "effects",
-        "bench --effects --size 512x384 --frames 9",
-        "effects.md effects-layers.svg",
-    ),
-    (
-        "scaling",
-        "bench --scaling --frames 3",
-        "scaling.md scaling-fragments.svg scaling-pixels.svg scaling-triangles.svg",
-    ),
-    // At a quarter of its pixels, with as many rows: the whole takes twenty minutes.
-    (
-        "thesis-full",
-        "run --full --size 512x384",
-        "results.json.xz table.md",
-    ),
-    ("extract-sbuffer", "<extract>", ""),
-    ("extract-dual", "<extract> --peel dual", ""),
-    ("extract-single", "<extract> --peel single", ""),
-];
+/// Commands of peelnet whose results are kept: the name, the command without `--out`, in which names in angle brackets stand for what
+/// [`filled`] puts there, and the files of its output that are kept; where none are, what it prints is, as JSON.
+///
+/// The thesis's recipe runs at a quarter of its pixels, with as many rows: the whole takes twenty minutes.
+const STEPS: &str = "
+    stress | stress | stress.csv.xz stress.md
+    held-out | bench <held-out> --size 512x384 --views 2 --frames 3 | results.json.xz table.md pareto.svg pareto-mean.svg
+    validation | bench <validation> --size 512x384 --views 1 --frames 3 | results.json.xz table.md
+    path | bench sixteen-held smoke-held --path --size 256x192 --methods <path> | path.csv path.md path-error.svg path-change.svg
+    samples | bench cups-held foliage-held --samples 4 --size 256x192 --views 1 --frames 3 --methods <path> | table.md
+    effects | bench --effects --size 512x384 --frames 9 | effects.md effects-layers.svg
+    scaling | bench --scaling --frames 3 | scaling.md scaling-fragments.svg scaling-pixels.svg scaling-triangles.svg
+    thesis-full | run --full --size 512x384 | results.json.xz table.md
+    extract-sbuffer | <extract> |
+    extract-dual | <extract> --peel dual |
+    extract-single | <extract> --peel single |";
+
+fn steps() -> Vec<[&'static str; 3]> {
+    let steps = STEPS.trim().lines().map(|line| {
+        let mut fields = line.split('|').map(str::trim);
+        [(); 3].map(|()| fields.next().unwrap_or_default())
+    });
+    steps.collect()
+}
 
 /// A step's command with scenes and methods in their places.
 fn filled(line: &str) -> Result<String, String> {
@@ -73,18 +51,19 @@ fn filled(line: &str) -> Result<String, String> {
 /// Runs the steps of these names, or every step, and puts what they keep into a folder of the machine's name. PEELNET_BINARY is a program that
 /// is built already.
 pub fn measure(machine: &str, names: &[&str]) -> Outcome {
-    let known = STEPS.map(|(name, ..)| name);
+    let steps = steps();
+    let known: Vec<&str> = steps.iter().map(|[name, ..]| *name).collect();
     if let Some(unknown) = names.iter().find(|name| !known.contains(name)) {
         let known = known.join(", ");
         return Err(format!("measure has no step {unknown}: {known}"));
     }
     let program = Program::given_or_built("")?;
-    let is_asked = |(name, ..): &&Step| names.is_empty() || names.contains(name);
+    let is_asked = |[name, ..]: &[&str; 3]| names.is_empty() || names.contains(name);
     let into = root().join("docs/results").join(machine);
     let io = |path: &Path, e: std::io::Error| format!("{}: {e}", path.display());
     let mut times = String::new();
     let all = Instant::now();
-    for (name, line, keep) in STEPS.iter().filter(is_asked) {
+    for [name, line, keep] in steps.into_iter().filter(is_asked) {
         let begin = Instant::now();
         let out = root().join("out/measure").join(name);
         let _ = fs::remove_dir_all(&out);
