@@ -149,9 +149,12 @@ fn template_folder(kind: usize) -> PathBuf {
     folder().join(format!("template-{}", FORMATS[kind]))
 }
 
-/// The files of a small dataset of one of these formats, by name; the manifest first.
-fn template(kind: usize) -> &'static [(String, Vec<u8>)] {
-    static TEMPLATES: [OnceLock<Vec<(String, Vec<u8>)>>; 3] = [const { OnceLock::new() }; 3];
+/// Files by their names.
+type Files = Vec<(String, Vec<u8>)>;
+
+/// The files of a small dataset of one of these formats; the manifest first.
+fn template(kind: usize) -> &'static Files {
+    static TEMPLATES: [OnceLock<Files>; 3] = [const { OnceLock::new() }; 3];
     TEMPLATES[kind].get_or_init(|| {
         let out = template_folder(kind);
         let options = SyntheticOptions {

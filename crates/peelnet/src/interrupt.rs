@@ -61,11 +61,6 @@ fn end() -> ! {
 /// What an interrupted command says.
 pub const MESSAGE: &str = "interrupted; files that were not finished are gone";
 
-/// Whether a signal came.
-pub fn requested() -> bool {
-    STOP.load(Ordering::Relaxed)
-}
-
 /// 128 and the number of the signal that came: 130 for SIGINT, 143 for SIGTERM.
 fn code() -> Option<u8> {
     let signal = SIGNAL.load(Ordering::SeqCst);

@@ -17,7 +17,6 @@ pub const KIND: Kind = Kind {
     },
 };
 
-/// The whole summary.
 pub fn summary_text(summary: &Summary) -> String {
     let mut t = format!(
         "rows        {}\n\

@@ -25,7 +25,7 @@ use peelnet_render::{ImageFormat, LearnedWeight, MethodSpec};
 use peelnet_report::kind_of;
 use peelnet_scene::{Scene, SceneError, suite};
 use std::path::{Path, PathBuf};
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// What every command works with.
 #[derive(Clone, Copy, Debug)]
@@ -37,7 +37,6 @@ pub struct Context<'a> {
 }
 
 impl Context<'_> {
-    /// Opens the adapter that the flags ask for.
     fn gpu(&self) -> Result<Gpu, Failure> {
         Ok(Gpu::open(&self.global.adapter)?)
     }
@@ -78,7 +77,6 @@ impl Context<'_> {
         Ok(())
     }
 
-    /// Loads scenes and shows their warnings.
     fn scenes(&self, paths: &[PathBuf]) -> Result<Vec<Scene>, Failure> {
         paths.iter().map(|path| self.scene(path, None)).collect()
     }
@@ -143,9 +141,8 @@ impl Context<'_> {
         Ok(())
     }
 
-    /// An error if a signal came.
     fn check_interrupt(&self) -> Result<(), Failure> {
-        if interrupt::requested() {
+        if self.stop.load(Ordering::Relaxed) {
             return Err(Failure::failed(interrupt::MESSAGE));
         }
         Ok(())

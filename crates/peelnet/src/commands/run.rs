@@ -41,23 +41,21 @@ const SHOWN: [&str; 8] = [
 /// The scene of it: held out, and of another kind than those of the run.
 const SHOWN_SCENE: &str = "foliage-held";
 
-/// The summary of the dataset, for programs and for people.
-const SUMMARY: [&str; 2] = ["dataset-summary.json", "dataset-summary.txt"];
-
 /// Everything that a run writes but its dataset, which has its own way.
 fn outputs(context: &Context<'_>, args: &RunArgs) -> Result<Outputs, Failure> {
     let mut outputs = context.outputs(&args.scenes);
     context.results(&mut outputs, &args.out, Results::<ThesisRun>::FILES)?;
     peelnet_dataset::replaces(&args.out.join("dataset"), false)?;
-    let summaries = SUMMARY.map(|name| (name, summary_text::KIND));
-    let networks = [
+    let files = [
+        ("dataset-summary.json", summary_text::KIND),
+        ("dataset-summary.txt", summary_text::KIND),
         ("model.safetensors", peelnet_model::KIND),
         ("model.wgsl", peelnet_export::KIND),
         ("model.json", peelnet_export::JSON_KIND),
         ("loss.csv", CurveFormat::Csv.kind()),
         ("loss.svg", CurveFormat::Svg.kind()),
     ];
-    outputs.folder("--out", &args.out, summaries.into_iter().chain(networks))?;
+    outputs.folder("--out", &args.out, files)?;
     Ok(outputs)
 }
 
@@ -196,8 +194,8 @@ impl Run<'_> {
         let summary = Summary::of(&dataset)?;
         let text = summary_text(&summary);
         let json = format!("{:#}\n", json!(summary));
-        write_file(&out.join(SUMMARY[0]), json)?;
-        write_file(&out.join(SUMMARY[1]), &text)?;
+        write_file(&out.join("dataset-summary.json"), json)?;
+        write_file(&out.join("dataset-summary.txt"), &text)?;
         if !summary.passes() {
             return Err(Failure::failed(format!(
                 "{}: rows of the dataset disagree with one another, see dataset-summary.txt",
