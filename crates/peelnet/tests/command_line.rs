@@ -96,8 +96,6 @@ const REFUSED: &str = "
     1 | render planes.toml --out a.png | planes.toml & camera.near & below far
     1 | train cut --out m | cut/fragments-00000-synthetic-v0.csv & bytes
     1 | inspect text.safetensors | text.safetensors
-    1 | inspect shape.safetensors | shape.safetensors
-    1 | export empty.safetensors --out w.wgsl | empty.safetensors
     1 | export cut.safetensors --out w.wgsl | cut.safetensors
 
     2 | export m.safetensors --out m.safetensors | --out m.safetensors
@@ -189,7 +187,6 @@ fn folder() -> Folder {
             "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 nan 0\nf 1 2 3\n",
         ),
         ("planes.toml", &SCENE.replace("near = 0.1", "near = 200")),
-        ("empty.safetensors", ""),
         ("text.safetensors", "this is not a model"),
         (
             "designs.toml",
@@ -212,15 +209,8 @@ fn folder() -> Folder {
     let whole = folder.read(rows);
     folder.write(rows, &whole[..whole.len() / 2]);
     folder.write_model("m.safetensors", peelnet::Recipe::SMALL);
-    let mut model = folder.read("m.safetensors");
+    let model = folder.read("m.safetensors");
     folder.write("cut.safetensors", &model[..model.len() / 2]);
-    // A shape in the header that the weights do not have.
-    folder.write_model("shape.safetensors", peelnet::Recipe::ANCHORED_SMALL);
-    model = folder.read("shape.safetensors");
-    let shape = b"\"shape\":[8,5]";
-    let at = model.windows(shape.len()).position(|w| w == shape).unwrap();
-    model[at..at + shape.len()].copy_from_slice(b"\"shape\":[5,9]");
-    folder.write("shape.safetensors", model);
     // Our own images, which may be replaced elsewhere, are textures of scenes.
     folder.prints("render two.toml --size 8x8 --out own.png");
     folder.write("ours/images/c.png", folder.read("own.png"));
