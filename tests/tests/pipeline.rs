@@ -2,16 +2,10 @@
 //! the program.
 
 use peelnet_dataset::{Column, Dataset, Format, FragmentBatch, Summary};
-use peelnet_gpu::Gpu;
-use peelnet_peel::{ExtractOptions, ExtractReport, Peel, extract};
+use peelnet_peel::{ExtractOptions, Peel, batches, extract};
 use peelnet_scene::Scene;
 use peelnet_tests::{gpu, scene, soup};
 use std::sync::atomic::AtomicBool;
-
-fn run(gpu: &Gpu, scenes: &[Scene], options: &ExtractOptions) -> ExtractReport {
-    let stop = AtomicBool::new(false);
-    extract(gpu, scenes, options, &stop, &mut |_| {}).unwrap()
-}
 
 /// Two scenes of slanted panes, two views each; the second one has two effects.
 fn scenes() -> [Scene; 2] {
@@ -27,12 +21,13 @@ fn scenes() -> [Scene; 2] {
     scenes
 }
 
-/// Recomputing from the rows gives what is stored, in every format and by every way to peel; rows are the same. The effects that scenes
-/// need are recorded.
+/// Recomputing from the rows gives what is stored, in every format and by every way to peel; rows are the same, also as batches in memory. The effects
+/// that scenes need are recorded.
 #[test]
 fn sums_hold_and_formats_and_peels_agree() {
     let gpu = gpu();
     let folder = tempfile::tempdir().unwrap();
+    let scenes = scenes();
     let mut first = None;
     for (format, peel) in [
         (Format::Parquet, Peel::SBuffer),
@@ -48,7 +43,8 @@ fn sums_hold_and_formats_and_peels_agree() {
             augment: 1,
             ..ExtractOptions::new(&out)
         };
-        let report = run(&gpu, &scenes(), &options);
+        let stop = AtomicBool::new(false);
+        let report = extract(&gpu, &scenes, &options, &stop, &mut |_| {}).unwrap();
         assert_eq!(report.manifest.parts.len(), 8);
         let effects = report.manifest.scenes.iter().map(|s| s.effects.clone());
         assert!(effects.eq([vec![], vec!["culling", "emission"]]));
@@ -58,37 +54,18 @@ fn sums_hold_and_formats_and_peels_agree() {
         assert!(summary.passes(), "{:?}", summary.violations);
         assert!(summary.rows > 1000, "{}", summary.rows);
         let rows = dataset.read_columns(&Column::ALL).unwrap();
+        let mut in_memory = FragmentBatch::default();
+        for batch in batches(&gpu, &scenes, &options).unwrap() {
+            let batch = batch.unwrap();
+            in_memory.extend_from(&batch, 0..batch.len());
+        }
+        assert!(in_memory == rows, "{format}, {peel}");
+        // One that is dropped early ends its thread.
+        let mut dropped = batches(&gpu, &scenes, &options).unwrap();
+        assert!(dropped.next().is_some_and(|batch| batch.is_ok()));
         match &first {
             None => first = Some(rows),
             Some(other) => assert!(&rows == other, "{format}, {peel}"),
         }
     }
-}
-
-/// Batches in memory hold the rows of the dataset, in its order; one that is dropped early ends its thread.
-#[test]
-fn batches_hold_the_rows_of_the_dataset() {
-    let gpu = gpu();
-    let scenes = [peelnet_scene::suite::load("panes").unwrap()];
-    let folder = tempfile::tempdir().unwrap();
-    let options = ExtractOptions {
-        size: [64, 48],
-        ..ExtractOptions::new(folder.path().join("rows"))
-    };
-    run(&gpu, &scenes, &options);
-    let dataset = Dataset::open(&options.out).unwrap();
-    let mut written = FragmentBatch::default();
-    for batch in dataset.batches(1 << 16) {
-        let batch = batch.unwrap();
-        written.extend_from(&batch, 0..batch.len());
-    }
-    let mut found = FragmentBatch::default();
-    for batch in peelnet_peel::batches(&gpu, &scenes, &options).unwrap() {
-        let batch = batch.unwrap();
-        found.extend_from(&batch, 0..batch.len());
-    }
-    assert!(found.len() > 1000);
-    assert_eq!(found, written);
-    let mut dropped = peelnet_peel::batches(&gpu, &scenes, &options).unwrap();
-    assert!(dropped.next().is_some_and(|batch| batch.is_ok()));
 }
