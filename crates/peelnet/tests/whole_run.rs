@@ -92,14 +92,3 @@ fn a_network_from_synthetic_lists_is_benched() {
     let small = named("--max-bytes 12");
     assert!(["wboit-eq9", "painter-object:sort=off"].contains(&small.as_str()));
 }
-
-/// By name and by the path that they have in the repository.
-#[test]
-fn shipped_scenes_and_networks_are_part_of_the_program() {
-    let folder = Folder::new(&[]);
-    for (scene, out) in [("cups", "a.png"), ("data/scenes/cups.toml", "b.png")] {
-        let render = format!("render {scene} --method deep-large --size 64x48 --out {out}");
-        folder.prints(&render);
-    }
-    assert!(folder.read("a.png") == folder.read("b.png"));
-}
