@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Rows a second of training: PyTorch, peelnet's trainer and a hand-written loop, side by side on this machine.
+"""Rows a second of training: PyTorch and peelnet's trainer, side by side on this machine.
 
     python3 benches/peers/train.py [--rows 262144] [--rounds 5] [--out out/peers]
 
-Needs cargo, rustc and Python with venv. The first run installs PyTorch into out/peers/venv. Every round runs every
+Needs cargo and Python with venv. The first run installs PyTorch into out/peers/venv. Every round runs every
 contestant once in turn, so that a busy machine slows all of them; the table shows medians over the rounds.
 """
 
@@ -104,8 +104,6 @@ def main():
     run("cargo", "build", "--release", "--quiet", "-p", "peelnet_train", "--example", "throughput", cwd=ROOT)
     target = pathlib.Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target"))
     ours = target / "release" / "examples" / "throughput"
-    limit = out / "limit"
-    run("rustc", "--edition", "2024", "-O", "-C", "target-cpu=native", "-o", limit, HERE / "limit.rs")
     data = out / f"rows-{arguments.rows}.f32"
     if not data.exists():
         synthetic(data, arguments.rows)
@@ -119,7 +117,6 @@ def main():
         common = [data, arguments.rows, batch, epochs]
         yield from ((("pytorch", n), [python, torch_script, *common, n]) for n in threads)
         yield from ((("peelnet", n), [ours, *common, n]) for n in threads)
-        yield ("limit", 1), [limit, *common]
 
     rates, losses = {}, {}
     for round_number in range(arguments.rounds):
@@ -133,17 +130,17 @@ def main():
     version = run(python, "-c", "import torch; print(torch.__version__)", capture_output=True, text=True).stdout.strip()
     print(f"{processor()}, {cores} cores; PyTorch {version}; {arguments.rows:,} rows, medians of {arguments.rounds} rounds;")
     print("million rows a second, the best number of threads in brackets.\n")
-    print("| batch | PyTorch | peelnet | hand-written, 1 thread | peelnet / PyTorch | peelnet / hand-written |")
-    print("|---|---|---|---|---|---|")
+    print("| batch | PyTorch | peelnet | peelnet / PyTorch |")
+    print("|---|---|---|---|")
     for batch in BATCHES:
 
         def best(name):
             return max((statistics.median(v), who[1]) for (b, who), v in rates.items() if b == batch and who[0] == name)
 
-        torch, ours_rate, top = best("pytorch"), best("peelnet"), best("limit")
+        torch, peelnet = best("pytorch"), best("peelnet")
         print(
-            f"| {batch:,} | {torch[0] / 1e6:.2f} ({torch[1]}) | {ours_rate[0] / 1e6:.2f} ({ours_rate[1]}) "
-            f"| {top[0] / 1e6:.2f} | {ours_rate[0] / torch[0]:.2f} | {ours_rate[0] / top[0]:.2f} |"
+            f"| {batch:,} | {torch[0] / 1e6:.2f} ({torch[1]}) | {peelnet[0] / 1e6:.2f} ({peelnet[1]}) "
+            f"| {peelnet[0] / torch[0]:.2f} |"
         )
     print(f"\nMean squared error in epoch {epochs}, to see that all of them train (initial weights differ):")
     for batch in BATCHES:

@@ -5,10 +5,10 @@ use std::{fs, io, path::Path};
 
 fn main() -> io::Result<()> {
     let corpus = Path::new(env!("CARGO_MANIFEST_DIR")).join("../fuzz/corpus");
-    for reader in READERS {
-        let folder = corpus.join(reader.name);
+    for (name, _, seeds) in READERS {
+        let folder = corpus.join(name);
         fs::create_dir_all(&folder)?;
-        for (seed, k) in (reader.seeds)().iter().zip(0..) {
+        for (seed, k) in seeds().iter().zip(0..) {
             fs::write(folder.join(format!("seed-{k}")), seed)?;
         }
     }

@@ -13,30 +13,22 @@ use std::{
 };
 use tempfile::TempDir;
 
-/// A reader and files to begin from.
-#[derive(Clone, Copy, Debug)]
-pub struct Reader {
-    /// The fuzz target's name.
-    pub name: &'static str,
-    /// Reads any bytes.
-    pub read: fn(&[u8]),
-    /// Files that are sound, and some that are nearly so.
-    pub seeds: fn() -> Vec<Vec<u8>>,
-}
-
-const fn reader(name: &'static str, read: fn(&[u8]), seeds: fn() -> Vec<Vec<u8>>) -> Reader {
-    Reader { name, read, seeds }
-}
+/// The name of a fuzz target, what it does with any bytes, and files to begin from: sound ones, and some that are nearly so.
+pub type Reader = (&'static str, fn(&[u8]), fn() -> Vec<Vec<u8>>);
 
 /// All of them.
 pub const READERS: [Reader; 7] = [
-    reader("scene", scene, || committed("scene")),
-    reader("obj", obj, || committed("obj")),
-    reader("dataset", dataset, dataset_seeds),
-    reader("model", model, model_seeds),
-    reader("gltf", gltf, || committed("gltf")),
-    reader("ply", |bytes| load("f.ply", bytes), || committed("ply")),
-    reader("stl", |bytes| load("f.stl", bytes), || committed("stl")),
+    (
+        "scene",
+        |bytes| load("s.toml", bytes),
+        || committed("scene"),
+    ),
+    ("obj", obj, || committed("obj")),
+    ("dataset", dataset, dataset_seeds),
+    ("model", model, model_seeds),
+    ("gltf", gltf, || committed("gltf")),
+    ("ply", |bytes| load("f.ply", bytes), || committed("ply")),
+    ("stl", |bytes| load("f.stl", bytes), || committed("stl")),
 ];
 
 /// The files in `tests/seeds`, each with what its reader knows: polygons and strips, colours, textures, lights, timelines, sparse accessors.
@@ -51,35 +43,25 @@ fn committed(name: &str) -> Vec<Vec<u8>> {
     paths.into_iter().map(read).collect()
 }
 
-/// A folder of this process that is removed with it.
+/// A folder of this process that is removed with it. Of the files that a scene or a mesh may name it has `a.obj` and `a.png`.
 fn folder() -> &'static Path {
     static FOLDER: OnceLock<TempDir> = OnceLock::new();
-    FOLDER
-        .get_or_init(|| tempfile::tempdir().expect("a temporary folder"))
-        .path()
+    let folder = FOLDER.get_or_init(|| {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n";
+        fs::write(folder.path().join("a.obj"), triangle).expect("writes");
+        let texels = [[255, 0, 0, 128], [0, 255, 0, 255]].concat();
+        let image = image::RgbaImage::from_raw(2, 1, texels).expect("two texels");
+        image.save(folder.path().join("a.png")).expect("encodes");
+        folder
+    });
+    folder.path()
 }
 
 fn put(name: &str, bytes: &[u8]) -> PathBuf {
     let path = folder().join(name);
     fs::write(&path, bytes).expect("the temporary folder can be written");
     path
-}
-
-/// The image as a file's bytes.
-fn image() -> Vec<u8> {
-    let texture = [[255, 0, 0, 128], [0, 255, 0, 255]].concat();
-    let mut bytes = std::io::Cursor::new(Vec::new());
-    let image = image::RgbaImage::from_raw(2, 1, texture).expect("two texels");
-    let written = image.write_to(&mut bytes, image::ImageFormat::Png);
-    written.map(|()| bytes.into_inner()).expect("encodes")
-}
-
-/// A scene file; the files that it may name do not exist, but for `a.obj` and `a.png`.
-fn scene(bytes: &[u8]) {
-    let triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n";
-    put("a.obj", triangle.as_bytes());
-    put("a.png", &image());
-    load("s.toml", bytes);
 }
 
 /// A file of this name; what the reader lets through can be drawn.
@@ -120,7 +102,6 @@ fn obj(bytes: &[u8]) {
     let mut parts = bytes.splitn(2, |b| *b == 0);
     let mesh = parts.next().unwrap_or_default();
     put("m.mtl", parts.next().unwrap_or_default());
-    put("a.png", &image());
     load("f.obj", mesh);
 }
 
@@ -131,25 +112,16 @@ const MANIFEST: &str = "_peelnet/manifest.json";
 fn dataset(bytes: &[u8]) {
     let (&which, contents) = bytes.split_first().unwrap_or((&0, &[]));
     let kind = usize::from(which) % 3;
-    let template = template(kind);
-    let files = &template.files;
-    let file = usize::from(which / 3) % files.len();
-    let folder = folder().join(format!("read-{}", FORMATS[kind]));
-    let _ = fs::create_dir_all(folder.join("_peelnet"));
-    let mut manifest = template.manifest.clone();
-    for (i, (name, sound)) in files.iter().enumerate() {
-        if i == file {
-            fs::write(folder.join(name), contents).expect("writes");
-            // So that the length fits, and the contents are looked at.
-            let length = |n: usize| format!("\"bytes\": {n}");
-            manifest = manifest.replace(&length(sound.len()), &length(contents.len()));
-        } else {
-            fs::write(folder.join(name), sound).expect("writes");
-        }
-    }
-    if files[file].0 != MANIFEST {
-        fs::write(folder.join(MANIFEST), manifest).expect("writes");
-    }
+    let files = template(kind);
+    let (name, sound) = &files[usize::from(which / 3) % files.len()];
+    let (_, manifest) = &files[0];
+    let folder = template_folder(kind);
+    let write = |name: &str, bytes: &[u8]| fs::write(folder.join(name), bytes).expect("writes");
+    // So that the length fits, and the contents are looked at.
+    let [from, to] = [sound.len(), contents.len()].map(|n| format!("\"bytes\": {n}"));
+    let adapted = String::from_utf8_lossy(manifest).replace(&from, &to);
+    write(MANIFEST, adapted.as_bytes());
+    write(name, contents);
     if let Ok(dataset) = Dataset::open(&folder) {
         // Either all rows are read, or an error ends them.
         let rows: Result<Vec<usize>, _> = dataset.batches(64).map(|b| b.map(|b| b.len())).collect();
@@ -157,32 +129,35 @@ fn dataset(bytes: &[u8]) {
             assert_eq!(rows.iter().sum::<usize>() as u64, dataset.rows());
         }
     }
+    write(MANIFEST, manifest);
+    write(name, sound);
 }
 
 fn dataset_seeds() -> Vec<Vec<u8>> {
     let mut seeds = Vec::new();
     for k in 0u8..3 {
-        for ((_, contents), file) in template(usize::from(k)).files.iter().zip(0u8..3) {
+        for ((_, contents), file) in template(usize::from(k)).iter().zip(0u8..3) {
             seeds.push([&[k + 3 * file], contents.as_slice()].concat());
         }
     }
     seeds
 }
 
-struct Template {
-    manifest: String,
-    /// Name and contents; the manifest first.
-    files: Vec<(String, Vec<u8>)>,
-}
-
 const FORMATS: [Format; 3] = [Format::Csv, Format::Npy, Format::Parquet];
 
-/// A small dataset of one of these formats.
-fn template(kind: usize) -> &'static Template {
-    static TEMPLATES: [OnceLock<Template>; 3] = [const { OnceLock::new() }; 3];
+fn template_folder(kind: usize) -> PathBuf {
+    folder().join(format!("template-{}", FORMATS[kind]))
+}
+
+/// Files by their names.
+type Files = Vec<(String, Vec<u8>)>;
+
+/// The files of a small dataset of one of these formats; the manifest first.
+fn template(kind: usize) -> &'static Files {
+    static TEMPLATES: [OnceLock<Files>; 3] = [const { OnceLock::new() }; 3];
     TEMPLATES[kind].get_or_init(|| {
         let format = FORMATS[kind];
-        let out = folder().join(format!("template-{format}"));
+        let out = template_folder(kind);
         let options = ExtractOptions {
             format,
             seed: 3,
@@ -190,17 +165,15 @@ fn template(kind: usize) -> &'static Template {
         };
         synthetic(12, &options, &AtomicBool::new(false), &mut |_| {}).expect("a small dataset");
         let names = fs::read_dir(&out).expect("lists").flatten();
-        let mut names: Vec<String> = names
-            .map(|e| e.file_name().to_string_lossy().into_owned())
-            .filter(|name| !name.starts_with(['.', '_']))
-            .collect();
-        names.push(MANIFEST.to_owned());
-        names.sort_by_key(|name| (name != MANIFEST, name.clone()));
-        let read = |name: &String| fs::read(out.join(name)).expect("reads");
-        Template {
-            manifest: String::from_utf8_lossy(&read(&names[0])).into_owned(),
-            files: names.iter().map(|n| (n.clone(), read(n))).collect(),
-        }
+        let names = names.map(|e| e.file_name().to_string_lossy().into_owned());
+        let mut names: Vec<String> = names.filter(|name| !name.starts_with(['.', '_'])).collect();
+        names.sort();
+        names.insert(0, MANIFEST.to_owned());
+        let read = |name: String| {
+            let bytes = fs::read(out.join(&name)).expect("reads");
+            (name, bytes)
+        };
+        names.into_iter().map(read).collect()
     })
 }
 

@@ -27,40 +27,61 @@ const fn needs(effect: Effect) -> Option<Effect> {
     }
 }
 
-/// Gives the first surface of a scene an effect; as far as it has one, so that it shows.
-fn add(effect: Effect, all: &mut Scene) {
+fn opaque(color: [f32; 3]) -> Material {
+    Material {
+        blend: false,
+        ..Material::unlit(color, 1.0)
+    }
+}
+
+/// Gives a scene an effect: its first surface, so that it shows, as far as it has one; or with values that change nothing.
+fn add(effect: Effect, all: &mut Scene, neutral: bool) {
+    let either = |shown: [f32; 3], unseen: f32| if neutral { [unseen; 3] } else { shown };
     let object = &mut all.objects[0];
     let material = &mut object.materials[0];
     match effect {
+        // Behind everything, of the background's colour.
+        Effect::Opaque if neutral => all.objects.push(wall(50.0, opaque(all.background))),
         Effect::Opaque => (material.alpha, material.blend) = (1.0, false),
         Effect::Culling => material.double_sided = false,
         Effect::Lighting | Effect::Pbr => {
-            material.lighting = match effect {
-                Effect::Pbr => Lighting::Pbr,
-                _ => Lighting::Phong,
+            let (kind, ambient) = match effect {
+                Effect::Pbr => (Lighting::Pbr, 0.03),
+                _ => (Lighting::Phong, 0.1),
             };
-            all.lights = vec![light(Vec3::new(1.0, 1.0, 0.0), [1.0; 3])];
+            material.lighting = kind;
+            if neutral {
+                // Radiance that is the colour: ambient light alone, of a colour that makes up for its share.
+                material.color = material.color.map(|c| c / ambient);
+            }
+            all.lights = vec![light(Vec3::new(1.0, 1.0, 0.0), either([1.0; 3], 0.0))];
         }
+        Effect::Cutout if neutral => all.objects[1].materials[0].alpha_cutoff = Some(0.5),
         Effect::Cutout => (material.alpha_cutoff, material.blend) = (Some(0.3), false),
-        Effect::Emission => material.emission = [0.2, 0.0, 0.1],
+        Effect::Emission => material.emission = either([0.2, 0.0, 0.1], 1e-9),
         Effect::LowResolution => all.transparency_scale = 0.5,
-        Effect::Transmission => material.transmission = [0.5; 3],
+        Effect::Transmission => material.transmission = either([0.5; 3], 1e-9),
         Effect::VertexColors => {
+            let [r, g, b] = either([0.5, 1.0, 0.25], 1.0);
             let mesh = Arc::make_mut(&mut object.mesh);
-            mesh.colors = vec![[0.5, 1.0, 0.25, 1.0]; mesh.positions.len()];
+            mesh.colors = vec![[r, g, b, 1.0]; mesh.positions.len()];
         }
-        Effect::Sun => {
-            all.lights = vec![Light {
-                source: Source::Toward(Vec3::Z),
-                ..light(Vec3::ZERO, [1.0; 3])
-            }];
-        }
+        Effect::Sun => all.lights.push(Light {
+            source: Source::Toward(Vec3::Z),
+            ..light(Vec3::ZERO, either([1.0; 3], 0.0))
+        }),
         Effect::Monochrome => {
             material.color = [0.6; 3];
             all.objects[1].materials[0].color = [0.3; 3];
             all.background = [0.1; 3];
         }
-        map => *map_of(&mut material.maps, map) = even([200, 150, 220, 255]),
+        map => {
+            *map_of(&mut material.maps, map) = even(match (neutral, map) {
+                (false, _) => [200, 150, 220, 255],
+                (true, Effect::NormalMap) => [128, 128, 255, 255],
+                (true, _) => [255; 4],
+            });
+        }
     }
 }
 
@@ -73,19 +94,35 @@ fn scene_with(effect: Option<Effect>) -> Scene {
     ];
     let mut all = scene("effects", [0.1, 0.2, 0.3], objects);
     for effect in [effect.and_then(needs), effect].into_iter().flatten() {
-        add(effect, &mut all);
+        add(effect, &mut all, false);
     }
     all
 }
+
+/// What each effect brings with it, and the one that it needs: bindings, attributes of vertices, and text that only it links.
+const BROUGHT: &str = "
+    opaque | opaque depth | |
+    culling | | |
+    lighting | lights | normal | lights halfway world
+    pbr | lights | normal | lights fresnel world
+    cutout | opaque depth | | is_hole
+    emission | | | material.emission
+    color-map | sampler, color-map | uv | color_map textureSampleGrad
+    normal-map | lights, sampler, normal-map | uv, tangent, normal | normal_map tangent
+    metallic-roughness-map | lights, sampler, metallic-roughness-map | uv, normal | metallic_roughness_map
+    occlusion-map | lights, sampler, occlusion-map | uv, normal | occlusion_map
+    emissive-map | sampler, emissive-map | uv | emissive_map
+    vertex-colors | | color | surface.color
+    directional-light | lights | normal | light.is_point
+    transmission | | | material.transmission
+    monochrome | | |
+    low-resolution | | |";
 
 /// What an effect brings with it is built where a scene needs it and only there: bindings, targets, passes, and the text of the
 /// shaders that the pipelines are made of.
 #[test]
 fn what_is_not_called_for_is_not_there() {
     let gpu = gpu();
-    let plain = Renderer::new(&gpu, &scene_with(None)).unwrap();
-    assert_eq!(plain.bindings(), ["camera", "materials"]);
-    assert_eq!(plain.vertex_attributes(), ["position", "material"]);
     // Bytes of a pixel, and passes.
     let costs = |s: &Scene| {
         let renderer = Renderer::new(&gpu, s).unwrap();
@@ -97,6 +134,9 @@ fn what_is_not_called_for_is_not_there() {
     let plain = Census::of(&scene_with(None)).variants;
     assert_eq!(plain.len(), 1);
     for effect in Effect::ALL {
+        let mut rows = BROUGHT.lines().map(|line| line.split('|').map(str::trim));
+        let row = rows.find_map(|mut row| (row.next() == Some(effect.name())).then_some(row));
+        let row: Vec<&str> = row.unwrap().collect();
         let with = scene_with(Some(effect));
         let census = Census::of(&with);
         assert!(census.has(effect), "{effect}");
@@ -104,45 +144,18 @@ fn what_is_not_called_for_is_not_there() {
         assert!(census.variants.contains(&plain[0]), "{effect}");
         assert!(census.variants.len() <= 2, "{effect}");
         let renderer = Renderer::new(&gpu, &with).unwrap();
-        let (bindings, attributes) = (renderer.bindings(), renderer.vertex_attributes());
-        let light = needs(effect).unwrap_or(effect);
-        let lit = matches!(light, Effect::Lighting | Effect::Pbr);
-        assert_eq!(bindings.contains(&"lights"), lit, "{effect}");
-        assert_eq!(attributes.contains(&"normal"), lit, "{effect}");
-        let mapped = Effect::MAPS.contains(&effect);
-        assert_eq!(bindings.contains(&"sampler"), mapped, "{effect}");
-        assert_eq!(attributes.contains(&"uv"), mapped, "{effect}");
-        for map in Effect::MAPS {
-            assert_eq!(bindings.contains(&map.name()), map == effect, "{effect}");
-        }
-        let tangents = effect == Effect::NormalMap;
-        assert_eq!(attributes.contains(&"tangent"), tangents, "{effect}");
-        let colors = effect == Effect::VertexColors;
-        assert_eq!(attributes.contains(&"color"), colors, "{effect}");
+        let bindings = renderer.bindings();
+        assert_eq!(bindings[..2], ["camera", "materials"], "{effect}");
+        assert_eq!(bindings[2..].join(", "), row[0], "{effect}");
+        let attributes = renderer.vertex_attributes();
+        assert_eq!(attributes[..2], ["position", "material"], "{effect}");
+        assert_eq!(attributes[2..].join(", "), row[1], "{effect}");
         let (bytes, passes) = costs(&with);
         // Without a scale every frame of this method has the same targets, but for grey, which has one less.
         if effect != Effect::LowResolution {
             assert_eq!(bytes < least, effect == Effect::Monochrome, "{effect}");
         }
-        let opaque = matches!(effect, Effect::Opaque | Effect::Cutout);
-        assert_eq!(bindings.contains(&"opaque depth"), opaque, "{effect}");
         assert_eq!(passes > fewest, effect == Effect::LowResolution, "{effect}");
-        // The text that only this effect links.
-        let words: &[&str] = match effect {
-            Effect::Lighting => &["lights", "halfway", "world"],
-            Effect::Pbr => &["lights", "fresnel", "world"],
-            Effect::Emission => &["material.emission"],
-            Effect::Cutout => &["is_hole"],
-            Effect::ColorMap => &["color_map", "textureSampleGrad"],
-            Effect::NormalMap => &["normal_map", "tangent"],
-            Effect::MetallicRoughnessMap => &["metallic_roughness_map"],
-            Effect::OcclusionMap => &["occlusion_map"],
-            Effect::EmissiveMap => &["emissive_map"],
-            Effect::VertexColors => &["surface.color"],
-            Effect::Sun => &["light.is_point"],
-            Effect::Transmission => &["material.transmission"],
-            _ => &[],
-        };
         let text_of = |scene: &Scene| -> String {
             let variants = Census::of(scene).variants.into_iter();
             let texts = variants.map(|v| {
@@ -153,7 +166,7 @@ fn what_is_not_called_for_is_not_there() {
             texts.collect()
         };
         let [with, without] = [text_of(&with), text_of(&with.without(effect))];
-        for word in words {
+        for word in row[2].split_whitespace() {
             assert!(with.contains(word), "{effect}: {word}");
             assert!(!without.contains(word), "{effect}: {word}");
         }
@@ -163,53 +176,19 @@ fn what_is_not_called_for_is_not_there() {
 /// A scene, and the same with an effect that changes nothing.
 fn neutral(effect: Effect) -> [Scene; 2] {
     let mut plain = scene_with(needs(effect));
-    let opaque = Material {
-        blend: false,
-        ..Material::unlit([0.1, 0.9, 0.4], 1.0)
-    };
+    let mut with = plain.clone();
     match effect {
-        Effect::Cutout => plain.objects[1] = wall(5.0, opaque),
-        Effect::Monochrome => plain = scene_with(Some(effect)).without(effect),
+        Effect::Cutout => {
+            plain.objects[1] = wall(5.0, opaque([0.1, 0.9, 0.4]));
+            with = plain.clone();
+        }
+        Effect::Monochrome => {
+            with = scene_with(Some(effect));
+            plain = with.without(effect);
+        }
         _ => {}
     }
-    let mut with = plain.clone();
-    let material = &mut with.objects[0].materials[0];
-    match effect {
-        // Behind everything, of the background's colour.
-        Effect::Opaque => {
-            let material = Material {
-                blend: false,
-                ..Material::unlit(plain.background, 1.0)
-            };
-            with.objects.push(wall(50.0, material));
-        }
-        Effect::Culling => material.double_sided = false,
-        // Radiance that is the colour: ambient light alone, of a colour that makes up for its share.
-        Effect::Lighting | Effect::Pbr => {
-            let (kind, ambient) = match effect {
-                Effect::Pbr => (Lighting::Pbr, 0.03),
-                _ => (Lighting::Phong, 0.1),
-            };
-            material.lighting = kind;
-            material.color = material.color.map(|c| c / ambient);
-            with.lights.push(light(Vec3::ZERO, [0.0; 3]));
-        }
-        Effect::Cutout => with.objects[1].materials[0].alpha_cutoff = Some(0.5),
-        Effect::Emission => material.emission = [1e-9; 3],
-        Effect::Transmission => material.transmission = [1e-9; 3],
-        Effect::NormalMap => material.maps.normal = even([128, 128, 255, 255]),
-        map if Effect::MAPS.contains(&map) => *map_of(&mut material.maps, map) = even([255; 4]),
-        Effect::VertexColors => {
-            let mesh = Arc::make_mut(&mut with.objects[0].mesh);
-            mesh.colors = vec![[1.0; 4]; mesh.positions.len()];
-        }
-        Effect::Sun => with.lights.push(Light {
-            source: Source::Toward(Vec3::Y),
-            ..light(Vec3::ZERO, [0.0; 3])
-        }),
-        Effect::Monochrome => with = scene_with(Some(effect)),
-        _ => with.transparency_scale = 0.5,
-    }
+    add(effect, &mut with, true);
     [plain, with]
 }
 

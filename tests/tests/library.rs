@@ -21,6 +21,29 @@ fn submit_pass(gpu: &Gpu, pass: &wgpu::RenderPassDescriptor<'_>) {
     gpu.queue.submit([encoder.finish()]);
 }
 
+/// Submits a pass over a texture that draws nothing, and resolves its samples.
+fn submit_color_pass(
+    gpu: &Gpu,
+    view: &wgpu::TextureView,
+    resolve_target: Option<&wgpu::TextureView>,
+    load: wgpu::LoadOp<wgpu::Color>,
+) {
+    let attachment = wgpu::RenderPassColorAttachment {
+        view,
+        depth_slice: None,
+        resolve_target,
+        ops: wgpu::Operations {
+            load,
+            store: wgpu::StoreOp::Store,
+        },
+    };
+    let pass = wgpu::RenderPassDescriptor {
+        color_attachments: &[Some(attachment)],
+        ..Default::default()
+    };
+    submit_pass(gpu, &pass);
+}
+
 /// A texture to draw onto, cleared to a colour.
 fn target(
     gpu: &Gpu,
@@ -32,19 +55,8 @@ fn target(
     let none = wgpu::TextureUsages::empty();
     let view = gpu.texture("target", format, size, samples, none).unwrap();
     let [r, g, b] = color.map(f64::from);
-    let pass = wgpu::RenderPassDescriptor {
-        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-            view: &view,
-            depth_slice: None,
-            resolve_target: None,
-            ops: wgpu::Operations {
-                load: wgpu::LoadOp::Clear(wgpu::Color { r, g, b, a: 1.0 }),
-                store: wgpu::StoreOp::Store,
-            },
-        })],
-        ..Default::default()
-    };
-    submit_pass(gpu, &pass);
+    let clear = wgpu::LoadOp::Clear(wgpu::Color { r, g, b, a: 1.0 });
+    submit_color_pass(gpu, &view, None, clear);
     view
 }
 
@@ -305,19 +317,7 @@ fn resolved(gpu: &Gpu, view: &wgpu::TextureView) -> Vec<[f32; 4]> {
     let single = target(gpu, texture.format(), size, 1, [0.0; 3]);
     let is_single = texture.sample_count() == 1;
     if !is_single {
-        let pass = wgpu::RenderPassDescriptor {
-            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view,
-                depth_slice: None,
-                resolve_target: Some(&single),
-                ops: wgpu::Operations {
-                    load: wgpu::LoadOp::Load,
-                    store: wgpu::StoreOp::Store,
-                },
-            })],
-            ..Default::default()
-        };
-        submit_pass(gpu, &pass);
+        submit_color_pass(gpu, view, Some(&single), wgpu::LoadOp::Load);
     }
     let texels = gpu.read_texture::<[u16; 4]>(if is_single { view } else { &single });
     let float = |bits| half::f16::from_bits(bits).to_f32();

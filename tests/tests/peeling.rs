@@ -51,16 +51,26 @@ fn harvest(
     (pixels, found.tiles)
 }
 
+/// In one tile, and of one scene also in tiles of a third of the frame and of less than a row.
 #[test]
 fn all_three_ways_find_the_same_fragments() {
     let gpu = gpu();
-    for seed in 1..4 {
+    for (seed, tilings) in [(1, 3), (2, 1), (3, 1)] {
         let scene = mixed(40, seed);
         let (sbuffer, _) = harvest(&gpu, &scene, Peel::SBuffer, None, None);
         assert!(sbuffer.iter().map(Vec::len).max() > Some(10));
-        for peel in [Peel::Dual, Peel::Single] {
-            let (found, _) = harvest(&gpu, &scene, peel, None, None);
-            assert!(found == sbuffer, "{peel}, seed {seed}");
+        let total: usize = sbuffer.iter().map(Vec::len).sum();
+        for peel in [Peel::SBuffer, Peel::Dual, Peel::Single] {
+            let budgets = [None, Some(total as u64 / 3), Some(150)];
+            for budget in &budgets[..tilings] {
+                let (found, tiles) = harvest(&gpu, &scene, peel, *budget, None);
+                assert!(if budget.is_some() {
+                    tiles >= 3
+                } else {
+                    tiles == 1
+                });
+                assert!(found == sbuffer, "{peel}, seed {seed}, {tiles} tiles");
+            }
         }
     }
 }
@@ -232,23 +242,6 @@ fn broken_sorts_and_lost_fragments_are_errors() {
     }
     for broken in BROKEN_LISTS {
         drawn(broken, &[random_depths(40, 1)], "linked-list");
-    }
-}
-
-#[test]
-fn tiles_change_nothing() {
-    let gpu = gpu();
-    let scene = mixed(40, 9);
-    for peel in [Peel::SBuffer, Peel::Dual, Peel::Single] {
-        let (whole, one) = harvest(&gpu, &scene, peel, None, None);
-        assert_eq!(one, 1);
-        let total: usize = whole.iter().map(Vec::len).sum();
-        // A third of the frame, and less than a row.
-        for budget in [total as u64 / 3, 150] {
-            let (tiled, tiles) = harvest(&gpu, &scene, peel, Some(budget), None);
-            assert!(tiles >= 3, "{tiles}");
-            assert!(tiled == whole, "{peel} with {tiles} tiles");
-        }
     }
 }
 

@@ -97,29 +97,23 @@ fn guess(between: &Between) -> f64 {
     (known.iter().sum::<f64>() * 12.9898).sin().abs()
 }
 
-/// A normalised method's colour of a pixel.
-struct Normalised {
-    name: String,
-    color: [f32; 3],
-    /// Whether its weights are declared to vanish far from the camera.
-    vanishes: bool,
-}
-
-/// Every point of every method's curve that needs no network.
-static POINTS: LazyLock<Vec<MethodSpec>> = LazyLock::new(|| {
-    let all = MethodSpec::compared().into_iter();
+/// Every point of every method's curve that needs no network, with its name, and whether its weights are declared to vanish far from the
+/// camera.
+static POINTS: LazyLock<Vec<(String, bool, MethodSpec)>> = LazyLock::new(|| {
+    let far = |f: &Flaw| f.property == Property::Hull && f.cases().any(|case| case == "far");
     // Twins know no precision of targets.
-    all.filter(|s| {
-        s.promises().normalised
-            && !s.promises().rounds_fragments
-            && !s.needs_model()
-            && s.targets().is_none()
-    })
-    .collect()
+    let is_one = |s: &MethodSpec| {
+        let is_sound = s.promises().normalised && !s.promises().rounds_fragments;
+        is_sound && !s.needs_model() && s.targets().is_none()
+    };
+    let all = MethodSpec::compared().into_iter().filter(is_one);
+    let all = all.map(|s| (s.to_string(), s.method().flaws.iter().any(far), s));
+    all.collect()
 });
 
-/// Every normalised method's colour, and that of the learned weights with a network that predicts anything.
-fn normalised(fragments: &[Fragment], background: [f32; 3]) -> Vec<Normalised> {
+/// Every normalised method's name and colour, and whether its weights may vanish; with those of the learned weights with a network that
+/// predicts anything.
+fn normalised(fragments: &[Fragment], background: [f32; 3]) -> Vec<(&str, [f32; 3], bool)> {
     let pixel = Pixel {
         fragments,
         background,
@@ -127,24 +121,21 @@ fn normalised(fragments: &[Fragment], background: [f32; 3]) -> Vec<Normalised> {
         position: [3, 5],
         model: None,
     };
-    let far = |f: &Flaw| f.property == Property::Hull && f.cases().any(|case| case == "far");
-    let twins = POINTS.iter().filter_map(|spec| {
-        Some(Normalised {
-            name: spec.to_string(),
-            color: spec.twin(&pixel)?,
-            vanishes: spec.method().flaws.iter().any(far),
-        })
+    let twins = POINTS.iter();
+    let twins = twins.filter_map(|(name, vanishes, s)| Some((&**name, s.twin(&pixel)?, *vanishes)));
+    let ends = [("anchored", false), ("anchored, separate ends", true)];
+    let anchored = ends.map(|(name, ends)| {
+        let color = anchored::composite(fragments, background, &pixel.warp, ends, share);
+        (name, color, false)
     });
-    let anchored = [false, true].into_iter().map(|ends| Normalised {
-        name: format!("anchored, separate ends {ends}"),
-        color: anchored::composite(fragments, background, &pixel.warp, ends, share),
-        vanishes: false,
-    });
-    let designs = [Design::SMALL, Design::MEDIUM, Design::LARGE];
-    let in_slabs = designs.into_iter().map(|design| Normalised {
-        name: format!("{design:?}"),
-        color: slabs::composite(fragments, background, &pixel.warp, design, guess),
-        vanishes: false,
+    let designs = [
+        ("small", Design::SMALL),
+        ("medium", Design::MEDIUM),
+        ("large", Design::LARGE),
+    ];
+    let in_slabs = designs.map(|(name, design)| {
+        let color = slabs::composite(fragments, background, &pixel.warp, design, guess);
+        (name, color, false)
     });
     twins.chain(anchored).chain(in_slabs).collect()
 }
@@ -194,7 +185,7 @@ proptest! {
         for f in [n, 1].map(|n| list((seed, n, depths, alphas))) {
             let exact = over::composite(&f, c0);
             let slack = if is_faint(&f) { 1e-4 } else { rounding(f.len()) };
-            for Normalised { name, color, vanishes } in normalised(&f, c0) {
+            for (name, color, vanishes) in normalised(&f, c0) {
                 // The published weights end at 2^-24 of opacity times weight: depths of 1e30 vanish, a declared flaw.
                 let vanishes = vanishes && f.iter().any(|f| f.depth > 1e2);
                 for k in 0..3 {

@@ -10,7 +10,6 @@ use peelnet_core::{
     random::Random,
 };
 use peelnet_eval::stress::{CASES, Outcome, Subject, stress};
-use peelnet_gpu::Gpu;
 use peelnet_render::{
     METHODS, MethodOptions, MethodSpec, Renderer,
     methods::{Pixel, Precision},
@@ -252,11 +251,12 @@ fn every_method_has_a_reference() {
     }
 }
 
-fn stress_case(gpu: &Gpu, id: &str, methods: Vec<MethodSpec>) {
+fn stress_case(name: &str, methods: Vec<MethodSpec>) {
+    let id = name.replace('_', "-");
     let case = CASES.iter().find(|c| c.id == id).unwrap();
     let subject = |method: &MethodSpec| Subject::new(method.clone(), network_of(method));
     let subjects: Vec<Subject> = methods.iter().map(subject).collect();
-    let rows = stress(gpu, case, &subjects, true, None, &mut |_| Ok(())).unwrap();
+    let rows = stress(&gpu(), case, &subjects, true, None, &mut |_| Ok(())).unwrap();
     let failed: Vec<_> = rows.iter().filter(|r| r.result == Outcome::Fail).collect();
     let (count, all) = (failed.len(), rows.len());
     assert!(count == 0, "{count} of {all} rows fail:\n{failed:#?}");
@@ -269,44 +269,36 @@ fn stress_case(gpu: &Gpu, id: &str, methods: Vec<MethodSpec>) {
 /// A test for every case, so that they run side by side: with representatives, and with all methods in every precision. `slow` ones are long
 /// with representatives, too.
 macro_rules! cases {
-    (quick: $($quick:ident = $quick_id:literal),*; slow: $($slow:ident = $slow_id:literal),*) => {
+    (quick: $($quick:ident),*; slow: $($slow:ident),*) => {
         mod representatives_in { $(
             #[test]
-            fn $quick() { super::stress_case(&super::gpu(), $quick_id, super::representatives()); }
+            fn $quick() { super::stress_case(stringify!($quick), super::representatives()); }
         )* }
         mod all_methods_in { $(
             #[test]
             #[ignore = "long: cargo xtask test --all"]
-            fn $quick() {
-                super::stress_case(&super::gpu(), $quick_id, super::Subject::all_methods());
-            }
+            fn $quick() { super::stress_case(stringify!($quick), super::Subject::all_methods()); }
         )* $(
             #[test]
             #[ignore = "long: cargo xtask test --all"]
-            fn $slow() {
-                super::stress_case(&super::gpu(), $slow_id, super::Subject::all_methods());
-            }
+            fn $slow() { super::stress_case(stringify!($slow), super::Subject::all_methods()); }
         )* }
 
         #[test]
         fn every_case_has_its_test() {
-            let tested = [$($quick_id,)* $($slow_id),*];
+            let tested = [$(stringify!($quick),)* $(stringify!($slow)),*];
+            let tested = tested.map(|name| name.replace('_', "-"));
             assert_eq!(CASES.len(), tested.len());
-            assert!(CASES.iter().all(|c| tested.contains(&c.id)));
+            assert!(CASES.iter().all(|c| tested.iter().any(|id| id == c.id)));
         }
     };
 }
 
 cases! {
     quick:
-        alpha_zero = "alpha-zero", alpha_tiny = "alpha-tiny", alpha_one = "alpha-one",
-        alpha_near_one = "alpha-near-one", near_overflow = "near-overflow", far = "far",
-        wide_range = "wide-range", coplanar = "coplanar", thin_slab = "thin-slab",
-        isolated = "isolated", two_layers = "two-layers", intersecting = "intersecting",
-        grazing = "grazing", emissive = "emissive", opaque_mix = "opaque-mix", empty = "empty",
-        half_float = "half-float", hostile_inputs = "hostile-inputs", passing = "passing",
-        moving_camera = "moving-camera", deep_2000 = "deep-2000";
+        alpha_zero, alpha_tiny, alpha_one, alpha_near_one, near_overflow, far, wide_range, coplanar, thin_slab, isolated,
+        two_layers, intersecting, grazing, emissive, opaque_mix, empty, half_float, hostile_inputs, passing, moving_camera,
+        deep_2000;
     slow:
-        high_alpha = "high-alpha", deep = "deep", deep_20000 = "deep-20000",
-        deep_100000 = "deep-100000"
+        high_alpha, deep, deep_20000, deep_100000
 }

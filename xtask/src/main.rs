@@ -11,6 +11,7 @@ mod web;
 
 use std::{
     env,
+    ffi::OsStr,
     path::{Path, PathBuf},
     process::{Command, ExitCode, Stdio},
 };
@@ -77,9 +78,7 @@ fn main() -> ExitCode {
         ["python"] => suites::python("test"),
         ["python", "--ray"] => suites::python("test,ray"),
         ["cluster", ref rest @ ..] => suites::cluster(rest),
-        [name] if suites::find(name).is_some() => {
-            suites::find(name).map_or(Ok(()), |suite| suite())
-        }
+        [name] if let Some(suite) = suites::find(name) => suite(),
         [] | ["help" | "--help" | "-h", ..] => {
             print!("{HELP}");
             Ok(())
@@ -122,24 +121,26 @@ fn root() -> PathBuf {
 
 /// A command in the root, of words parted by spaces; `cargo` is the one that runs this program.
 fn command(line: &str) -> Command {
-    let mut words = line.split_whitespace();
-    let mut command = match words.next() {
-        Some("cargo") => Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into())),
+    let (program, rest) = line.trim().split_once(' ').unwrap_or((line, ""));
+    match program {
+        "cargo" => program_in_root(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()), rest),
         // On Windows, npm is a script.
-        Some("npm") if cfg!(windows) => Command::new("npm.cmd"),
-        name => Command::new(name.unwrap_or_default()),
-    };
-    command.args(words);
-    in_root(&mut command);
-    command
+        "npm" if cfg!(windows) => program_in_root("npm.cmd", rest),
+        _ => program_in_root(program, rest),
+    }
 }
 
-fn in_root(command: &mut Command) {
+/// A program in the root with arguments parted by spaces.
+fn program_in_root(program: impl AsRef<OsStr>, arguments: &str) -> Command {
+    let mut command = Command::new(program);
     // Graphics libraries complain on stderr where this is not set, as in containers.
     if env::var_os("XDG_RUNTIME_DIR").is_none() {
         command.env("XDG_RUNTIME_DIR", env::temp_dir());
     }
-    command.current_dir(root());
+    command
+        .args(arguments.split_whitespace())
+        .current_dir(root());
+    command
 }
 
 /// Runs a command of words parted by spaces, its output shown.

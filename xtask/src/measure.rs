@@ -7,114 +7,87 @@ use crate::{
 };
 use std::{fs, path::Path, time::Instant};
 
-/// A command of peelnet whose results are kept.
-struct Step {
-    /// Name of the folder that it writes below `out/measure`, and of the one that keeps its results.
-    name: &'static str,
-    /// The command, without `--out`; the names in angle brackets stand for what [`filled`] puts there.
-    line: &'static str,
-    /// Files of its output that are kept. None: what it prints is, as JSON.
-    keep: &'static str,
-}
-
-const fn step(name: &'static str, line: &'static str, keep: &'static str) -> Step {
-    Step { name, line, keep }
-}
-
 /// Scenes that choose which setting stands for a family of methods; none of them is in a table.
 const VALIDATION_SCENES: [&str; 3] = ["intersecting", "sixteen-050", "sixteen-random-color"];
 
 /// One or two of each family: sixty frames of sixty settings would take an hour.
 const PATH_METHODS: &str = "abuffer,painter-object,painter-triangle,wboit-eq9,mboit4,mboit6,wavelet-3:bounds=pixel,bins-8,avboit,kbuffer-4,stochastic-16,deep-thesis,nmt,dfaoit,deep-anchored-medium,deep-small,deep-medium,deep-large";
 
-const STEPS: [Step; 11] = [
-    step("stress", "stress", "stress.csv.xz stress.md"),
-    step(
-        "held-out",
-        "bench <held-out> --size 512x384 --views 2 --frames 3",
-        "results.json.xz table.md pareto.svg pareto-mean.svg",
-    ),
-    step(
-        "validation",
-        "bench <validation> --size 512x384 --views 1 --frames 3",
-        "results.json.xz table.md",
-    ),
-    step(
-        "path",
-        "bench sixteen-held smoke-held --path --size 256x192 --methods <path>",
-        "path.csv path.md path-error.svg path-change.svg",
-    ),
-    step(
-        "samples",
-        "bench cups-held foliage-held --samples 4 --size 256x192 --views 1 --frames 3 --methods <path>",
-        "table.md",
-    ),
-    step(
-        "effects",
-        "bench --effects --size 512x384 --frames 9",
-        "effects.md effects-layers.svg",
-    ),
-    step(
-        "scaling",
-        "bench --scaling --frames 3",
-        "scaling.md scaling-fragments.svg scaling-pixels.svg scaling-triangles.svg",
-    ),
-    // At a quarter of its pixels, with as many rows: the whole takes twenty minutes.
-    step(
-        "thesis-full",
-        "run --full --size 512x384",
-        "results.json.xz table.md",
-    ),
-    step("extract-sbuffer", "<extract>", ""),
-    step("extract-dual", "<extract> --peel dual", ""),
-    step("extract-single", "<extract> --peel single", ""),
-];
+/// Commands of peelnet whose results are kept: the name, the command without `--out`, in which names in angle brackets stand for what
+/// [`filled`] puts there, and the files of its output that are kept; where none are, what it prints is, as JSON.
+///
+/// The thesis's recipe runs at a quarter of its pixels, with as many rows: the whole takes twenty minutes.
+const STEPS: &str = "
+    stress | stress | stress.csv.xz stress.md
+    held-out | bench <held-out> --size 512x384 --views 2 --frames 3 | results.json.xz table.md pareto.svg pareto-mean.svg
+    validation | bench <validation> --size 512x384 --views 1 --frames 3 | results.json.xz table.md
+    path | bench sixteen-held smoke-held --path --size 256x192 --methods <path> | path.csv path.md path-error.svg path-change.svg
+    samples | bench cups-held foliage-held --samples 4 --size 256x192 --views 1 --frames 3 --methods <path> | table.md
+    effects | bench --effects --size 512x384 --frames 9 | effects.md effects-layers.svg
+    scaling | bench --scaling --frames 3 | scaling.md scaling-fragments.svg scaling-pixels.svg scaling-triangles.svg
+    thesis-full | run --full --size 512x384 | results.json.xz table.md
+    extract-sbuffer | <extract> |
+    extract-dual | <extract> --peel dual |
+    extract-single | <extract> --peel single |";
+
+fn steps() -> Vec<[&'static str; 3]> {
+    let steps = STEPS.trim().lines().map(|line| {
+        let mut fields = line.split('|').map(str::trim);
+        [(); 3].map(|()| fields.next().unwrap_or_default())
+    });
+    steps.collect()
+}
 
 /// A step's command with scenes and methods in their places.
-fn filled(step: &Step) -> Result<String, String> {
+fn filled(line: &str) -> Result<String, String> {
     let extract = "extract data/scenes/sixteen-050.toml --size 1024x768 --json";
-    let line = step
-        .line
+    Ok(line
         .replace("<held-out>", &held_out_scenes()?.join(" "))
         .replace("<validation>", &VALIDATION_SCENES.map(scene_file).join(" "))
         .replace("<path>", PATH_METHODS)
-        .replace("<extract>", extract);
-    Ok(format!("{line} --out {} --quiet", measured(step)))
-}
-
-fn measured(step: &Step) -> String {
-    format!("out/measure/{}", step.name)
+        .replace("<extract>", extract))
 }
 
 /// Runs the steps of these names, or every step, and puts what they keep into a folder of the machine's name. PEELNET_BINARY is a program that
 /// is built already.
 pub fn measure(machine: &str, names: &[&str]) -> Outcome {
-    let known = STEPS.map(|s| s.name);
+    let steps = steps();
+    let known: Vec<&str> = steps.iter().map(|[name, ..]| *name).collect();
     if let Some(unknown) = names.iter().find(|name| !known.contains(name)) {
         let known = known.join(", ");
         return Err(format!("measure has no step {unknown}: {known}"));
     }
     let program = Program::given_or_built("")?;
-    let is_asked = |step: &&Step| names.is_empty() || names.contains(&step.name);
+    let is_asked = |[name, ..]: &[&str; 3]| names.is_empty() || names.contains(name);
     let into = root().join("docs/results").join(machine);
+    let io = |path: &Path, e: std::io::Error| format!("{}: {e}", path.display());
     let mut times = String::new();
-    let begin = Instant::now();
-    for step in STEPS.iter().filter(is_asked) {
+    let all = Instant::now();
+    for [name, line, keep] in steps.into_iter().filter(is_asked) {
         let begin = Instant::now();
-        let out = root().join(measured(step));
+        let out = root().join("out/measure").join(name);
         let _ = fs::remove_dir_all(&out);
-        let line = filled(step)?;
-        if step.keep.is_empty() {
-            let printed = program.captured(&line)?;
-            let file = out.with_extension("json");
-            fs::write(&file, printed).map_err(|e| format!("{}: {e}", file.display()))?;
+        let line = format!("{} --out out/measure/{name} --quiet", filled(line)?);
+        let kept = into.join(if keep.is_empty() { "" } else { name });
+        fs::create_dir_all(&kept).map_err(|e| io(&kept, e))?;
+        if keep.is_empty() {
+            let file = kept.join(format!("{name}.json"));
+            fs::write(&file, program.captured(&line)?).map_err(|e| io(&file, e))?;
         } else {
             program.run(&line)?;
         }
-        keep(step, &into)?;
-        times += &format!("{:>7.1} s  {}\n", begin.elapsed().as_secs_f64(), step.name);
+        for file in keep.split_terminator(' ') {
+            // Rows are kept packed: a name of that kind stands for the file that was written.
+            let plain = file.trim_end_matches(".xz");
+            let (from, to) = (out.join(plain), kept.join(plain));
+            fs::copy(&from, &to).map_err(|e| io(&from, e))?;
+            if plain != file {
+                run(&format!("xz -9 --force {}", to.display()))?;
+            }
+        }
+        times += &format!("{:>7.1} s  {name}\n", begin.elapsed().as_secs_f64());
     }
-    let together = begin.elapsed().as_secs_f64();
+    let together = all.elapsed().as_secs_f64();
     println!(
         "\n{times}{together:>7.1} s  together; results are in {}",
         into.display()
@@ -122,33 +95,5 @@ pub fn measure(machine: &str, names: &[&str]) -> Outcome {
     println!(
         "next: PEELNET_UPDATE=1 cargo nextest run -p peelnet_tests generated_tables puts them into the documents"
     );
-    Ok(())
-}
-
-/// Copies what is kept of a step.
-fn keep(step: &Step, into: &Path) -> Outcome {
-    let from = root().join(measured(step));
-    let mut files: Vec<_> = step
-        .keep
-        .split(' ')
-        .map(|file| (from.join(file), into.join(step.name).join(file)))
-        .collect();
-    if step.keep.is_empty() {
-        let file = format!("{}.json", step.name);
-        files = vec![(from.with_extension("json"), into.join(file))];
-    }
-    for (from, to) in files {
-        let folder = to.parent().unwrap_or(into);
-        fs::create_dir_all(folder).map_err(|e| format!("{}: {e}", folder.display()))?;
-        // Rows are kept packed: a name of that kind stands for the file that was written.
-        let [from, plain] = [from, to.clone()].map(|path| match path.extension() {
-            Some(end) if end == "xz" => path.with_extension(""),
-            _ => path,
-        });
-        fs::copy(&from, &plain).map_err(|e| format!("{}: {e}", from.display()))?;
-        if plain != to {
-            run(&format!("xz -9 --force {}", plain.display()))?;
-        }
-    }
     Ok(())
 }

@@ -1,6 +1,6 @@
 //! What runs the program itself: the demo, and the shipped networks.
 
-use crate::{Outcome, captured, in_root, program, root, run, setup::ensure_driver, start};
+use crate::{Outcome, captured, program, program_in_root, root, run, setup::ensure_driver, start};
 use std::{env, fs, path::PathBuf, process::Command};
 
 /// `peelnet` as cargo builds it, for commands whose words are parted by spaces.
@@ -24,10 +24,7 @@ impl Program {
 
     fn command(&self, line: &str) -> Command {
         println!("\n== peelnet {line}");
-        let mut command = Command::new(&self.0);
-        command.args(line.split_whitespace());
-        in_root(&mut command);
-        command
+        program_in_root(&self.0, line)
     }
 
     pub fn run(&self, line: &str) -> Outcome {

@@ -5,14 +5,13 @@ use crate::{
     checks::Step,
     command,
     product::Program,
-    program, root, run,
+    program, program_in_root, root, run,
     setup::{apt_install, ensure, ensure_browser, ensure_driver, ensure_subcommand},
     start, target_folder, web,
 };
 use std::{
     env,
     path::{Path, PathBuf},
-    process::Command,
 };
 
 /// Every suite by its command, the quickest first; some commands take arguments as well.
@@ -26,7 +25,7 @@ pub const SUITES: [Step; 12] = [
     ("languages", languages),
     ("python", || python("test,ray")),
     ("faults", || {
-        again("PEELNET_KILLS", "50", "peelnet --test faults --")
+        again("PEELNET_KILLS", "50", "peelnet --test all -- faults::")
     }),
     ("search", || {
         let tests = "peelnet_tests --test all -- random_lists";
@@ -62,11 +61,9 @@ fn bevy() -> Outcome {
 fn wasm() -> Outcome {
     let crates = "-p peelnet_core -p peelnet_scene -p peelnet_shaders -p peelnet_gpu -p peelnet_model \
                   -p peelnet_export -p peelnet_render -p peelnet_peel -p peelnet_eval -p peelnet_view";
-    let check = run(&format!("cargo check --target {} {crates}", web::TARGET));
-    check.map_err(|e| {
-        let target = web::TARGET;
-        format!("{e}; where the target is missing: rustup target add {target}")
-    })
+    let target = web::TARGET;
+    run(&format!("cargo check --target {target} {crates}"))
+        .map_err(|e| format!("{e}; where the target is missing: rustup target add {target}"))
 }
 
 /// Installs and tests a package of npm in this folder.
@@ -80,8 +77,7 @@ fn npm(folder: &str, more: &[(&str, &Path)]) -> Outcome {
 /// The exported texts, by the compilers that renderers use.
 fn languages() -> Outcome {
     if !answers("glslangValidator --version") {
-        let installed = apt_install("glslang-tools");
-        installed.map_err(|e| {
+        apt_install("glslang-tools").map_err(|e| {
             format!("{e}; install glslangValidator, of the Khronos Group's glslang")
         })?;
     }
@@ -98,7 +94,7 @@ fn again(variable: &str, value: &str, tests: &str) -> Outcome {
 /// Commands as a whole and every fuzz target for so many seconds, one after the other; a finding ends it and lies in fuzz/artifacts.
 pub fn fuzz(seconds: &str) -> Outcome {
     println!("\n== commands, {seconds} s");
-    let commands = "peelnet --test fuzzed_commands --";
+    let commands = "peelnet --test all -- fuzzed_commands::";
     again("PEELNET_FUZZ_SECONDS", seconds, commands)?;
     ensure_subcommand("fuzz")?;
     run("cargo run --package peelnet_tests --example write_seeds")?;
@@ -110,8 +106,7 @@ pub fn fuzz(seconds: &str) -> Outcome {
             "+nightly fuzz run {target} -- -max_total_time={seconds} -dict=fuzz/formats.dict \
              -rss_limit_mb=1024 -timeout=10 -print_final_stats=1"
         );
-        let mut cargo = Command::new("cargo");
-        start(cargo.args(line.split_whitespace()).current_dir(root()))?;
+        start(&mut program_in_root("cargo", &line))?;
     }
     Ok(())
 }
@@ -151,19 +146,14 @@ pub fn python(extras: &str) -> Outcome {
     ensure_driver()?;
     let python = installed(extras)?;
     run("cargo fmt --check --manifest-path python/Cargo.toml")?;
-    let clippy = "cargo clippy --locked --manifest-path python/Cargo.toml -- -D warnings";
-    start(
-        command(clippy)
-            .env("CARGO_TARGET_DIR", target_folder())
-            .env("PYO3_PYTHON", &python),
-    )?;
+    let mut clippy =
+        command("cargo clippy --locked --manifest-path python/Cargo.toml -- -D warnings");
+    clippy.env("CARGO_TARGET_DIR", target_folder());
+    start(clippy.env("PYO3_PYTHON", &python))?;
     // What its pictures, rows and errors are compared with.
     run("cargo build --package peelnet")?;
-    let mut tests = Command::new(&python);
-    tests
-        .args(["-m", "pytest", "python/tests"])
-        .env("PEELNET", program("debug"));
-    start(tests.current_dir(root()))
+    let mut tests = program_in_root(&python, "-m pytest python/tests");
+    start(tests.env("PEELNET", program("debug")))
 }
 
 /// Lints of the templates in deploy/; datasets and models in an object store, against an S3 server on this machine; then Ray with two nodes on it,
@@ -177,49 +167,39 @@ pub fn cluster(rest: &[&str]) -> Outcome {
         "kubernetes-validate --strict deploy/kubernetes-indexed-job.yaml",
     ] {
         println!("\n== {lint}");
-        let mut words = lint.split(' ');
-        let tool = python.with_file_name(words.next().unwrap_or_default());
-        start(Command::new(tool).args(words).current_dir(root()))?;
+        let (tool, arguments) = lint.split_once(' ').unwrap_or_default();
+        start(&mut program_in_root(python.with_file_name(tool), arguments))?;
     }
     println!("\n== object store");
     run("cargo build --package peelnet --features object-store")?;
-    let mut store = Command::new(&python);
-    store.arg("tests/object_store.py").arg(program("debug"));
-    start(store.current_dir(root()))?;
+    let mut store = program_in_root(&python, "tests/object_store.py");
+    start(store.arg(program("debug")))?;
     println!("\n== Ray");
     // Ray asks for addresses that other machines reach; a network namespace has none but its own, and two runs do not meet.
-    let script = "ip link set lo up && exec \"$0\" python/cluster/run.py \"$@\"";
-    start(
-        command("unshare --map-root-user --net sh -c")
-            .arg(script)
-            .arg(&python)
-            .args(rest)
-            .env("RAY_USAGE_STATS_ENABLED", "0"),
-    )
+    let mut ray = command("unshare --map-root-user --net sh -c");
+    ray.arg("ip link set lo up && exec \"$0\" python/cluster/run.py \"$@\"");
+    ray.arg(&python).args(rest);
+    start(ray.env("RAY_USAGE_STATS_ENABLED", "0"))
 }
 
 /// The Python of `target/python`, with the package and these of its extras in it.
 fn installed(extras: &str) -> Result<PathBuf, String> {
     let folder = root().join("target/python");
-    let inside = if cfg!(windows) {
-        "Scripts/python.exe"
-    } else {
-        "bin/python"
-    };
-    let python = folder.join(inside);
+    let python = folder.join(match cfg!(windows) {
+        true => "Scripts/python.exe",
+        false => "bin/python",
+    });
     if !python.exists() {
         let maker = env::var_os("PYTHON").unwrap_or_else(|| "python3".into());
         println!("making a virtual environment in target/python");
-        let made = start(Command::new(maker).args(["-m", "venv"]).arg(&folder));
+        let made = start(&mut program_in_root(maker, "-m venv target/python"));
         made.map_err(|e| format!("{e}; PYTHON names another Python, 3.10 or later"))?;
     }
-    let mut pip = Command::new(&python);
-    pip.args(["-m", "pip", "install", "--quiet", "--upgrade"])
-        .arg(format!("./python[{extras}]"))
-        // The same profile as clippy and the program here, so that crates are compiled once.
-        .env("CARGO_TARGET_DIR", target_folder())
-        .env("MATURIN_PEP517_ARGS", "--profile dev");
-    start(pip.current_dir(root())).map(|()| python)
+    let install = format!("-m pip install --quiet --upgrade ./python[{extras}]");
+    let mut pip = program_in_root(&python, &install);
+    // The same profile as clippy and the program here, so that crates are compiled once.
+    pip.env("CARGO_TARGET_DIR", target_folder());
+    start(pip.env("MATURIN_PEP517_ARGS", "--profile dev")).map(|()| python)
 }
 
 /// Licences, sources and versions; advisories where their database can be reached.

@@ -3,10 +3,11 @@
 #[cfg(test)]
 mod tests;
 
-use crate::values::{fraction, methods, one_of, positive, samples, size, views};
+use crate::values::{SAMPLES, fraction, methods, one_of, positive, size, views};
 use clap::{Args, Parser, Subcommand};
 use peelnet::{LANGUAGES, PRECISIONS, SCHEDULES, SPLITS};
 use peelnet_dataset::{Format, Shard, SplitBy};
+use peelnet_eval::stress::{CASES, Case};
 use peelnet_export::{Language, Precision};
 use peelnet_gpu::AdapterRequest;
 use peelnet_model::Recipe;
@@ -40,15 +41,12 @@ An output replaces only a file of its own kind, any file with --force, never a l
 NO_COLOR switches colours off."
 )]
 pub struct Cli {
-    /// Flags of every command.
     #[command(flatten)]
     pub global: Global,
-    /// The command.
     #[command(subcommand)]
     pub command: Command,
 }
 
-/// Flags of every command.
 #[derive(Clone, Debug, Args)]
 pub struct Global {
     /// The GPU to use: part of an adapter's name, or "software"
@@ -71,7 +69,6 @@ pub struct Global {
     pub force: bool,
 }
 
-/// Every command.
 #[derive(Debug, Subcommand)]
 pub enum Command {
     /// Extract, train, export and compare in one command
@@ -100,7 +97,6 @@ pub enum Command {
     Doctor,
 }
 
-/// `peelnet run`.
 #[derive(Clone, Debug, Args)]
 #[command(after_help = "Examples:
   peelnet run --out out/demo              the shipped sixteen-model scenes, in minutes without a GPU
@@ -133,7 +129,6 @@ pub struct RunArgs {
     pub seed: u64,
 }
 
-/// `peelnet extract`.
 #[derive(Clone, Debug, Args)]
 #[command(after_help = "Examples:
   peelnet extract sixteen-050 --out d
@@ -191,7 +186,6 @@ pub struct ExtractArgs {
     pub resume: bool,
 }
 
-/// `peelnet seal`.
 #[derive(Clone, Debug, Args)]
 #[command(after_help = "Examples:
   peelnet seal d
@@ -205,7 +199,6 @@ pub struct SealArgs {
     pub dataset: PathBuf,
 }
 
-/// `peelnet train`.
 #[derive(Clone, Debug, Args)]
 #[command(after_help = "Examples:
   peelnet train d --out m.safetensors
@@ -236,7 +229,7 @@ pub struct TrainArgs {
     #[arg(long, value_name = "X", value_parser = positive)]
     pub lr: Option<f64>,
     /// Learning rate over the run: constant, or one cycle that rises for a fifth of the steps and falls to nothing [default: the recipe's]
-    #[arg(long, value_name = "SCHEDULE", value_parser = one_of(SCHEDULES))]
+    #[arg(long, value_name = "SCHEDULE", value_parser = one_of(SCHEDULES.to_vec()))]
     pub schedule: Option<Schedule>,
     /// What small, medium and large minimise: image, contributions, weighted-transmittance or transmittance
     #[arg(long, value_name = "LOSS", default_value = "image")]
@@ -261,14 +254,13 @@ pub struct TrainArgs {
     #[arg(long, value_name = "N", requires = "stream", default_value_t = peelnet_train::DEFAULT_BUFFER_ROWS)]
     pub buffer_rows: u64,
     /// What stays together when rows are set aside for testing: scenes (one scene alone is split by pixel), or pixels of all scenes alike
-    #[arg(long, value_name = "BY", default_value = "scene", value_parser = one_of(SPLITS))]
+    #[arg(long, value_name = "BY", default_value = "scene", value_parser = one_of(SPLITS.to_vec()))]
     pub split: SplitBy,
     /// Stop after N epochs without a lower held-out loss and keep the best
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub patience: Option<u32>,
 }
 
-/// `peelnet export`.
 #[derive(Clone, Debug, Args)]
 #[command(after_help = "Examples:
   peelnet export m.safetensors --out weight.wgsl
@@ -284,10 +276,10 @@ pub struct ExportArgs {
     #[arg(long, value_name = "FILE")]
     pub out: PathBuf,
     /// Shading language: WebGPU's WGSL, GLSL ES 3.00 (WebGL 2), GLSL 4.50 (OpenGL, Vulkan), HLSL (shader model 6.0) or MSL (Metal 2.4)
-    #[arg(long, default_value = "wgsl", value_parser = one_of(LANGUAGES))]
+    #[arg(long, default_value = "wgsl", value_parser = one_of(LANGUAGES.to_vec()))]
     pub lang: Language,
     /// Arithmetic of the function, 32-bit or 16-bit floats
-    #[arg(long, default_value = "f32", value_parser = one_of(PRECISIONS))]
+    #[arg(long, default_value = "f32", value_parser = one_of(PRECISIONS.to_vec()))]
     pub precision: Precision,
 }
 
@@ -300,12 +292,11 @@ const RENDER_EXAMPLES: &str = "Examples:
 IMAGE by its ending: .png (sRGB), .exr (linear f32), .npy (linear f32, H x W x 4 with coverage).
 A learned method without --model uses the shipped model.";
 
-const LAYER_FORMULAS: &[(&str, LayerFormula)] = &[
+const LAYER_FORMULAS: [(&str, LayerFormula); 2] = [
     ("front", LayerFormula::Front),
     ("printed", LayerFormula::Printed),
 ];
 
-/// `peelnet render`.
 #[derive(Clone, Debug, Args)]
 #[command(after_help = RENDER_EXAMPLES, after_long_help = format!("{RENDER_EXAMPLES}\n\n{}", crate::methods_text::methods()))]
 pub struct RenderArgs {
@@ -328,7 +319,7 @@ pub struct RenderArgs {
     #[arg(long, value_name = "WxH", value_parser = size, default_value = "1024x768")]
     pub size: [u32; 2],
     /// Samples a pixel: 1, or 4 where multisampling has them; each is composited by itself. A frame of 4 is drawn four times
-    #[arg(long, value_name = "1|4", default_value_t = 1, value_parser = samples, conflicts_with = "highlight")]
+    #[arg(long, value_name = "1|4", default_value_t = 1, value_parser = one_of(SAMPLES), conflicts_with = "highlight")]
     pub samples: u32,
     /// Time in the scene's timeline; material values are interpolated between its states
     #[arg(long, value_name = "T", allow_negative_numbers = true)]
@@ -345,7 +336,6 @@ pub struct RenderArgs {
     pub layers: LayerFormula,
 }
 
-/// `peelnet view`.
 #[derive(Clone, Debug, Args)]
 #[command(after_help = "Examples:
   peelnet view                                           a shipped scene; drop files of your own onto the window
@@ -395,7 +385,6 @@ pub struct ViewArgs {
     pub screenshot: Option<PathBuf>,
 }
 
-/// `peelnet bench`.
 #[derive(Clone, Debug, Args)]
 #[command(after_help = "Examples:
   peelnet bench cups --out out/bench
@@ -458,7 +447,7 @@ pub struct BenchArgs {
     #[arg(long, value_name = "WxH", value_parser = size, default_value = "1024x768")]
     pub size: [u32; 2],
     /// Samples a pixel, 1 or 4, of all methods and of the exact image; a frame of 4 is drawn four times
-    #[arg(long, value_name = "1|4", default_value_t = 1, value_parser = samples, conflicts_with_all = ["scaling", "effects"])]
+    #[arg(long, value_name = "1|4", default_value_t = 1, value_parser = one_of(SAMPLES), conflicts_with_all = ["scaling", "effects"])]
     pub samples: u32,
     /// Views of each scene
     #[arg(long, value_name = "N|all", default_value = "all", value_parser = views)]
@@ -468,7 +457,6 @@ pub struct BenchArgs {
     pub resume: bool,
 }
 
-/// `peelnet stress`.
 #[derive(Clone, Debug, Args)]
 #[command(after_help = "Examples:
   peelnet stress                                        every method, with the shipped networks
@@ -491,14 +479,13 @@ pub struct StressArgs {
     )]
     pub models: Vec<PathBuf>,
     /// Names of cases, separated by commas [default: all]
-    #[arg(long, value_name = "CASE,CASE", value_delimiter = ',')]
-    pub cases: Vec<String>,
+    #[arg(long, value_name = "CASE,CASE", value_delimiter = ',', value_parser = one_of(CASES.iter().map(|case| (case.id, case))))]
+    pub cases: Vec<&'static Case>,
     /// Folder for the results and for pictures of failures
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
 }
 
-/// `peelnet recommend`.
 #[derive(Clone, Debug, Args)]
 #[command(after_help = "Examples:
   peelnet recommend cups --budget-ms 30 --results out/bench
@@ -541,7 +528,6 @@ pub struct RecommendArgs {
     pub frames: u32,
 }
 
-/// `peelnet inspect`.
 #[derive(Clone, Debug, Args)]
 #[command(after_help = "Examples:
   peelnet inspect sixteen-050

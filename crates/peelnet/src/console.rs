@@ -17,7 +17,6 @@ pub struct Console {
 }
 
 impl Console {
-    /// From the flags `--quiet` and `--json`.
     pub const fn new(quiet: bool, json: bool) -> Self {
         Self { quiet, json }
     }
@@ -68,7 +67,6 @@ impl Console {
         }
     }
 
-    /// Whether progress bars may be drawn.
     pub fn shows_progress(self) -> bool {
         !self.quiet && io::stderr().is_terminal()
     }

@@ -64,7 +64,7 @@ impl<E: Error + 'static> From<E> for Failure {
         while let Some(error) = next {
             let (is_wrong_value, hint) = advice(error);
             failure.is_wrong_value |= is_wrong_value;
-            failure.hint = failure.hint.or(hint.map(str::to_owned));
+            failure.hint = failure.hint.or(hint);
             failure.is_gpu_lost |= matches!(find(error), Some(GpuError::Lost(_)));
             next = error.source();
         }
@@ -79,88 +79,78 @@ fn find<'a, E: Error + 'static>(error: &'a (dyn Error + 'static)) -> Option<&'a 
 }
 
 /// Whether an error says that a value is wrong, and which flag helps.
-fn advice(error: &(dyn Error + 'static)) -> (bool, Option<&'static str>) {
-    const RESUME: (bool, Option<&str>) = (false, Some("leave out --resume to start again"));
-    if let Some(error) = find::<Refused>(error) {
-        return (error.is_wrong_value, None);
+fn advice(error: &(dyn Error + 'static)) -> (bool, Option<String>) {
+    #[cfg(feature = "train")]
+    if let Some(error) = find(error) {
+        return training_advice(error);
     }
-    if let Some(error) = find::<GpuError>(error) {
-        return match error {
+    let (is_wrong_value, hint) = if let Some(error) = find::<Refused>(error) {
+        (error.is_wrong_value, "")
+    } else if let Some(error) = find(error) {
+        let is_dual = |what: &str| what.starts_with("dual depth peeling");
+        match error {
             GpuError::NoSuchAdapter { .. } => {
-                let hint = "choose one with --adapter, or leave the flag out";
-                (true, Some(hint))
+                (true, "choose one with --adapter, or leave the flag out")
             }
-            GpuError::OutOfMemory { .. } | GpuError::Lost(_) => (false, Some("--adapter software")),
+            GpuError::OutOfMemory { .. } | GpuError::Lost(_) => (false, "--adapter software"),
             GpuError::MissingFeature { what, .. } | GpuError::TooLarge { what, .. }
-                if what.starts_with("dual depth peeling") =>
+                if is_dual(what) =>
             {
-                (false, Some("--peel sbuffer or --peel single"))
+                (false, "--peel sbuffer or --peel single")
             }
-            _ => (false, None),
-        };
-    }
-    if let Some(error) = find::<RenderError>(error) {
-        return match error {
-            RenderError::WrongValue(_) => (true, None),
-            RenderError::NeedsModel(_) => (false, Some("give its model file with --model")),
-            _ => (false, None),
-        };
-    }
-    if let Some(error) = find::<PeelError>(error) {
-        return match error {
+            _ => (false, ""),
+        }
+    } else if let Some(error) = find(error) {
+        match error {
+            RenderError::WrongValue(_) => (true, ""),
+            RenderError::NeedsModel(_) => (false, "give its model file with --model"),
+            _ => (false, ""),
+        }
+    } else if let Some(error) = find(error) {
+        match error {
             PeelError::Setting { setting, .. } => {
                 let hint = match *setting {
-                    "views" => Some("set it with --views"),
-                    "augment" => Some("lower --augment or --views"),
-                    "pixels" => Some("set it with --pixels"),
-                    "lists" => Some("set it with --synthetic"),
-                    _ => None,
+                    "views" => "set it with --views",
+                    "augment" => "lower --augment or --views",
+                    "pixels" => "set it with --pixels",
+                    "lists" => "set it with --synthetic",
+                    _ => "",
                 };
                 (true, hint)
             }
-            _ => (false, None),
-        };
-    }
-    match find(error) {
-        Some(EvalError::Resume { .. }) => RESUME,
-        Some(EvalError::SameName { .. }) => (true, None),
-        _ => training(error, RESUME),
-    }
+            _ => (false, ""),
+        }
+    } else {
+        match find(error) {
+            Some(EvalError::Resume { .. }) => (false, RESUME),
+            Some(EvalError::SameName { .. }) => (true, ""),
+            _ => (false, ""),
+        }
+    };
+    let hint = Some(hint).filter(|hint| !hint.is_empty());
+    (is_wrong_value, hint.map(str::to_owned))
 }
 
+const RESUME: &str = "leave out --resume to start again";
+
+/// The same of training, whose settings are called as their flags.
 #[cfg(feature = "train")]
-fn training(
-    error: &(dyn Error + 'static),
-    resume: (bool, Option<&'static str>),
-) -> (bool, Option<&'static str>) {
+fn training_advice(error: &peelnet_train::TrainError) -> (bool, Option<String>) {
     use peelnet_train::TrainError;
-    match find(error) {
-        Some(TrainError::Checkpoint { .. }) => resume,
-        Some(TrainError::CurveFormat(_)) => (true, None),
-        Some(TrainError::Config { setting, .. }) => {
-            let hint = match *setting {
-                "epochs" => Some("set it with --epochs"),
-                "batch" => Some("set it with --batch"),
-                "hidden" => Some("set it with --hidden"),
-                "max_rows" => Some("set it with --max-rows"),
-                "buffer_rows" => Some("set it with --buffer-rows"),
-                "learning_rate" => Some("set it with --lr"),
-                "patience" => Some("set it with --patience"),
-                "loss" => Some("set it with --loss"),
-                _ => None,
+    match error {
+        TrainError::Checkpoint { .. } => (false, Some(RESUME.to_owned())),
+        TrainError::CurveFormat(_) => (true, None),
+        TrainError::Config { setting, .. } => {
+            let flag = match *setting {
+                "learning_rate" => "lr".to_owned(),
+                setting => setting.replace('_', "-"),
             };
-            (true, hint)
+            let flags = "epochs batch hidden max-rows buffer-rows lr patience loss";
+            let has_flag = flags.split(' ').any(|known| known == flag);
+            (true, has_flag.then(|| format!("set it with --{flag}")))
         }
         _ => (false, None),
     }
-}
-
-#[cfg(not(feature = "train"))]
-fn training(
-    _: &(dyn Error + 'static),
-    _: (bool, Option<&'static str>),
-) -> (bool, Option<&'static str>) {
-    (false, None)
 }
 
 #[cfg(test)]

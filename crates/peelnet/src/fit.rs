@@ -99,15 +99,13 @@ impl ModelPlace {
         for path in loss_curves {
             outputs.file(curve_label, path, CurveFormat::of(path)?.kind())?;
         }
-        let scratch = match is_file {
-            true => None,
-            false => {
-                let folder = tempfile::tempdir().map_err(|e| {
-                    Failure::failed(format!("cannot create a temporary folder: {e}"))
-                })?;
-                let unfinished = Unfinished::new(folder.path());
-                Some((folder, unfinished))
-            }
+        let scratch = if is_file {
+            None
+        } else {
+            let folder = tempfile::tempdir()
+                .map_err(|e| Failure::failed(format!("cannot create a temporary folder: {e}")))?;
+            let unfinished = Unfinished::new(folder.path());
+            Some((folder, unfinished))
         };
         let out = out.map(Path::to_owned);
         Ok(Self { out, scratch })
@@ -115,12 +113,9 @@ impl ModelPlace {
 
     /// The file that is trained into.
     pub fn file(&self) -> PathBuf {
-        match (&self.scratch, &self.out) {
-            (None, Some(out)) => out.clone(),
-            (scratch, _) => {
-                let folder = scratch.as_ref().map(|(folder, _)| folder.path());
-                folder.unwrap_or(Path::new("")).join("model.safetensors")
-            }
+        match &self.scratch {
+            Some((folder, _)) => folder.path().join("model.safetensors"),
+            None => self.out.clone().unwrap_or_default(),
         }
     }
 

@@ -16,9 +16,6 @@ static STOP: AtomicBool = AtomicBool::new(false);
 static SIGNAL: AtomicI32 = AtomicI32::new(0);
 
 /// Installs the handlers and gives the flag that long loops look at.
-///
-/// # Errors
-/// If the system refuses, which it does not when this is called once.
 pub fn install() -> std::io::Result<&'static AtomicBool> {
     listen()?;
     Ok(&STOP)
@@ -63,11 +60,6 @@ fn end() -> ! {
 
 /// What an interrupted command says.
 pub const MESSAGE: &str = "interrupted; files that were not finished are gone";
-
-/// Whether a signal came.
-pub fn requested() -> bool {
-    STOP.load(Ordering::Relaxed)
-}
 
 /// 128 and the number of the signal that came: 130 for SIGINT, 143 for SIGTERM.
 fn code() -> Option<u8> {

@@ -22,11 +22,7 @@ pub fn load_model(path: impl AsRef<Path>) -> Result<Model, ModelError> {
     }
     let action = "read the model";
     let bytes = read_object(path, MAX_BYTES).map_err(|e| remote(path, action, e))?;
-    let bytes = bytes.ok_or_else(|| ModelError::Io {
-        path: path.to_owned(),
-        action,
-        source: ErrorKind::NotFound.into(),
-    })?;
+    let bytes = bytes.ok_or_else(|| failed(path, action, ErrorKind::NotFound.into()))?;
     Model::from_bytes(&bytes, path)
 }
 
@@ -70,20 +66,20 @@ const WRITE: &str = "write the model";
 
 fn taken(path: &Path) -> ModelError {
     let why = "there is another object, and none is replaced; choose another name";
-    ModelError::Io {
-        path: path.to_owned(),
-        action: WRITE,
-        source: Error::new(ErrorKind::AlreadyExists, why),
-    }
+    failed(path, WRITE, Error::new(ErrorKind::AlreadyExists, why))
 }
 
 fn remote(path: &Path, action: &'static str, error: DatasetError) -> ModelError {
-    let (path, source) = match error {
-        DatasetError::Io { path, source, .. } => (path, source),
+    match error {
+        DatasetError::Io { path, source, .. } => failed(&path, action, source),
         // Its path is without what could be a password.
-        DatasetError::Invalid { path, reason } => (path, Error::other(reason)),
-        other => (path.to_owned(), Error::other(other)),
-    };
+        DatasetError::Invalid { path, reason } => failed(&path, action, Error::other(reason)),
+        other => failed(path, action, Error::other(other)),
+    }
+}
+
+fn failed(path: &Path, action: &'static str, source: Error) -> ModelError {
+    let path = path.to_owned();
     ModelError::Io {
         path,
         action,

@@ -33,7 +33,6 @@ impl Bar {
         Self(bar)
     }
 
-    /// Sets the position, the total and the text.
     pub fn set(&self, done: u64, total: u64, text: String) {
         self.0.set_length(total);
         self.0.set_message(one_line(&text).into_owned());

@@ -34,13 +34,7 @@ pub fn fraction(text: &str) -> Result<f64, String> {
 }
 
 /// Samples a pixel.
-pub fn samples(text: &str) -> Result<u32, String> {
-    match text {
-        "1" => Ok(1),
-        "4" => Ok(4),
-        _ => Err(format!("a pixel has 1 or 4 samples, not '{text}'")),
-    }
-}
+pub const SAMPLES: [(&str, u32); 2] = [("1", 1), ("4", 4)];
 
 /// A positive number.
 pub fn positive(text: &str) -> Result<f64, String> {
@@ -71,13 +65,14 @@ pub fn methods(text: &str) -> Result<Option<Vec<MethodSpec>>, String> {
     methods.map(Some).map_err(|e| e.to_string())
 }
 
-/// One of the names in a table.
+/// The value of one of these names.
 pub fn one_of<T: Copy + Send + Sync + 'static>(
-    names: &'static [(&'static str, T)],
+    values: impl IntoIterator<Item = (&'static str, T)>,
 ) -> impl TypedValueParser<Value = T> {
-    PossibleValuesParser::new(names.iter().map(|(name, _)| *name)).map(|name: String| {
-        let found = names.iter().find(|(n, _)| *n == name);
-        found.expect("the parser takes these names alone").1
+    let (names, values): (Vec<&str>, Vec<T>) = values.into_iter().unzip();
+    PossibleValuesParser::new(names.clone()).map(move |name: String| {
+        let found = names.iter().position(|known| *known == name);
+        values[found.expect("the parser takes these names alone")]
     })
 }
 

@@ -2,11 +2,8 @@
 //! an undisturbed run gives.
 //!
 //! Each command is killed twice here, and as often as the environment's `PEELNET_KILLS` says (`cargo xtask faults`: fifty times).
-#![allow(clippy::unwrap_used, reason = "a failing test may panic")]
 
-mod common;
-
-use common::{Folder, SPHERES};
+use crate::common::{Folder, SPHERES};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::Stdio;
@@ -17,31 +14,22 @@ fn folder() -> Folder {
     Folder::new(&[("s.toml", &SPHERES.replace("views = 2", "views = 6"))])
 }
 
-/// Bytes of every file below a folder, by its name; `.` at the start of a name marks what is temporary.
-fn contents(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
-    let mut all = BTreeMap::new();
-    let mut open = vec![folder.to_owned()];
-    while let Some(next) = open.pop() {
-        for entry in std::fs::read_dir(next).into_iter().flatten() {
-            let path = entry.unwrap().path();
-            if path.file_name().unwrap().to_string_lossy().starts_with('.') {
-                continue;
-            }
-            if path.is_dir() {
-                open.push(path);
-            } else {
-                let bytes = std::fs::read(&path).unwrap();
-                all.insert(path.strip_prefix(folder).unwrap().to_owned(), bytes);
-            }
-        }
-    }
-    all
+/// The files below a folder with hashes of what they hold.
+fn files(folder: &Folder) -> BTreeMap<PathBuf, u64> {
+    let all = folder.everything().into_iter();
+    let files = all.filter(|(_, (kind, _))| kind == "file");
+    files.map(|(path, (_, hash))| (path, hash)).collect()
 }
 
-/// Whether temporary files lie in a folder.
-fn holds_hidden(folder: &Path) -> bool {
-    let mut entries = std::fs::read_dir(folder).unwrap();
-    entries.any(|e| e.unwrap().file_name().to_string_lossy().starts_with('.'))
+/// Whether a path is of something temporary: a part of it begins with a dot.
+fn is_hidden(path: &Path) -> bool {
+    let mut names = path.components();
+    names.any(|name| name.as_os_str().to_string_lossy().starts_with('.'))
+}
+
+/// Whether anything temporary is left.
+fn holds_hidden(folder: &Folder) -> bool {
+    folder.everything().keys().any(|path| is_hidden(path))
 }
 
 /// Whether a PNG file is complete.
@@ -84,31 +72,31 @@ fn an_extraction_that_is_killed_leaves_whole_parts_and_can_be_resumed() {
     let folder = folder();
     let line = "extract s.toml --out o --size 320x240 --seed 5";
     folder.prints(line);
-    let out = folder.at("o");
-    let whole = contents(&out);
-    let is_rows = |name: &Path| name.to_string_lossy().starts_with("fragments-");
+    let whole = files(&folder);
+    let is_rows = |path: &Path| path.to_string_lossy().contains("fragments-") && !is_hidden(path);
     let mut resume = false;
     kill_again_and_again(line, &folder, || {
-        let left = contents(&out);
-        if left.contains_key(Path::new("_peelnet/manifest.json")) {
+        let mut left = files(&folder);
+        left.retain(|path, _| !is_hidden(path));
+        if folder.at("o/_peelnet/manifest.json").exists() {
             assert_eq!(left, whole, "a dataset with a manifest is whole");
         }
         // Finished parts are whole, and stay.
-        let mut stay = left.iter().filter(|(name, _)| is_rows(name));
-        assert!(stay.all(|(name, bytes)| whole.get(name) == Some(bytes)));
+        let mut stay = left.iter().filter(|(path, _)| is_rows(path));
+        assert!(stay.all(|(path, hash)| whole.get(path) == Some(hash)));
         // Once by what is missing, once as a new dataset.
         resume = !resume;
         let flag = if resume { "--resume" } else { "" };
         folder.prints(&format!("{line} {flag}"));
-        let (mut again, mut whole) = (contents(&out), whole.clone());
+        let (mut again, mut whole) = (files(&folder), whole.clone());
+        assert!(!holds_hidden(&folder));
         if resume {
             // The plan has the command line of whoever made it.
-            again.retain(|name, _| is_rows(name));
-            whole.retain(|name, _| is_rows(name));
+            again.retain(|path, _| is_rows(path));
+            whole.retain(|path, _| is_rows(path));
             folder.prints("inspect o");
         }
         assert_eq!(again, whole, "again");
-        assert!(!holds_hidden(&out) && !holds_hidden(&out.join("_peelnet")));
     });
 }
 
@@ -145,13 +133,15 @@ fn a_bench_that_is_killed_goes_on_to_the_same_errors() {
     };
     let whole = errors();
     kill_again_and_again(line, &folder, || {
-        for (name, bytes) in contents(&folder.at("o")) {
-            let is_sound = match name.extension().unwrap().to_str() {
+        let left = files(&folder).into_keys();
+        for path in left.filter(|path| path.starts_with("o") && !is_hidden(path)) {
+            let bytes = folder.read(path.to_str().unwrap());
+            let is_sound = match path.extension().unwrap().to_str() {
                 Some("json") => serde_json::from_slice::<serde_json::Value>(&bytes).is_ok(),
                 Some("png") => is_whole(&bytes),
                 _ => !bytes.is_empty(),
             };
-            assert!(is_sound, "{}", name.display());
+            assert!(is_sound, "{}", path.display());
         }
         folder.prints(&format!("{line} --resume"));
         assert_eq!(errors(), whole);
@@ -172,25 +162,16 @@ fn resuming_what_has_finished_says_so_and_keeps_it() {
     );
     folder.prints(train);
     folder.prints(bench);
-    for (line, code, file, words) in [
-        (train, 0, "m-0.5", "already finished after epoch 2"),
-        (
-            bench,
-            0,
-            "o/results.json",
-            "has finished with these settings",
-        ),
-        (
-            &format!("{bench} --views 1"),
-            1,
-            "o/results.json",
-            "leave out --resume",
-        ),
+    for (line, code, words) in [
+        (train, 0, "already finished after epoch 2"),
+        (bench, 0, "has finished with these settings"),
+        (&format!("{bench} --views 1"), 1, "leave out --resume"),
     ] {
-        let before = folder.read(file);
+        let before = ["m-0.5", "o/results.json"].map(|file| folder.read(file));
         let text = folder.says(&format!("{line} --resume"), code);
         assert!(text.contains(words), "{line}: {text}");
-        assert!(folder.read(file) == before, "{line}");
+        let after = ["m-0.5", "o/results.json"].map(|file| folder.read(file));
+        assert!(after == before, "{line}");
     }
 }
 
@@ -201,7 +182,7 @@ fn a_full_disk_is_one_error_and_leaves_nothing() {
     let folder = folder();
     folder.prints("extract --synthetic 2000 --out d");
     folder.prints("train d --out m.safetensors --epochs 1");
-    let before = contents(folder.path());
+    let before = files(&folder);
     for (kilobytes, line) in [
         (16, "extract s.toml --out o --size 320x240"),
         (16, "extract s.toml --out o --size 320x240 --format csv"),
@@ -226,10 +207,12 @@ fn a_full_disk_is_one_error_and_leaves_nothing() {
         let errors = errors.filter(|l| !l.contains("XDG_RUNTIME_DIR"));
         assert_eq!(errors.count(), 1, "{line}: {text}");
         // A bench may have finished pictures before its table did not fit; each is whole.
-        let mut left = contents(folder.path());
-        left.retain(|name, _| !before.contains_key(name));
-        assert!(left.values().all(|png| is_whole(png)), "{line}");
-        assert!(!holds_hidden(folder.path()), "{line}");
+        for path in files(&folder).into_keys() {
+            let is_old = before.contains_key(&path);
+            let is_whole = || is_whole(&folder.read(path.to_str().unwrap()));
+            assert!(is_old || is_whole(), "{line}");
+        }
+        assert!(!holds_hidden(&folder), "{line}");
         let _ = std::fs::remove_dir_all(folder.at("o"));
     }
 }

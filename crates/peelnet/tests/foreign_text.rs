@@ -1,9 +1,6 @@
 //! Text from strangers, in files and arguments, reaches neither a terminal nor a shader unescaped.
-#![allow(clippy::unwrap_used, reason = "a failing test may panic")]
 
-mod common;
-
-use common::{Folder, SCENE};
+use crate::common::{Folder, SCENE};
 use std::process::Output;
 
 /// Clears a screen, starts lines that look like ours, and turns the writing direction, in every way a terminal knows.
@@ -78,8 +75,9 @@ fn arguments_are_printed_escaped() {
         let output = folder.command(before).arg(HOSTILE).output().unwrap();
         assert!(!output.status.success(), "{before}");
         // The parser of arguments leaves out what it knows as colours.
+        let is_parsed = before.contains(" s ") || before.ends_with("--cases");
         let shown = assert_plain(&output, before);
-        assert!(shown || before.contains(" s "), "{before}");
+        assert!(shown || is_parsed, "{before}");
     }
 }
 

@@ -3,16 +3,13 @@
 //!
 //! Nothing guides the search: what a command covers is not seen across processes. The workspace's tests run some seeds; with the variable
 //! `PEELNET_FUZZ_SECONDS`, which `cargo xtask fuzz` sets, new ones are tried for so long.
-#![cfg(unix)]
-#![allow(clippy::unwrap_used, reason = "a failing test may panic")]
 
-mod common;
-
-use common::{Folder, SCENE};
+use crate::common::{Folder, SCENE};
 use peelnet_core::random::Random;
 use std::os::unix::fs::symlink;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
+use std::sync::mpsc;
 use std::time::{Duration, Instant};
 
 /// Command lines that every test run tries.
@@ -48,36 +45,19 @@ const VALUES: &str =
 const CURVES: &str =
     "loss.csv curve.svg table.csv new.svg d/_peelnet/manifest.json m.safetensors -";
 
-/// A command with flags that keep it short, its inputs, and flags that get a value.
-const LINES: [(&str, &str, &str); 11] = [
-    (
-        "render --size 8x8",
-        "s.toml link.toml cups",
-        "--method --view --time --highlight",
-    ),
-    (
-        "extract --size 8x8",
-        "s.toml cups",
-        "--views --format --pixels --augment --seed --shard",
-    ),
-    ("extract --synthetic 30", "", "--format --seed"),
-    (
-        "train --epochs 1",
-        "d",
-        "--recipe --batch --hidden --max-rows --patience --seed",
-    ),
-    ("export", "m.safetensors n", "--lang --precision"),
-    (
-        "bench --methods wboit-eq9 --frames 0 --size 8x8",
-        "s.toml",
-        "--views --models",
-    ),
-    ("run --size 8x8 --rows 100 --epochs 1", "s.toml", "--seed"),
-    ("inspect", "s.toml d m.safetensors cups", ""),
-    ("seal", "d g", ""),
-    ("stress --cases deep --methods wboit-eq9", "", "--models"),
-    ("doctor", "", "--adapter"),
-];
+/// Commands with flags that keep them short, their inputs, and flags that get a value.
+const LINES: &str = "
+    render --size 8x8 | s.toml link.toml cups | --method --view --time --highlight
+    extract --size 8x8 | s.toml cups | --views --format --pixels --augment --seed --shard
+    extract --synthetic 30 | | --format --seed
+    train --epochs 1 | d | --recipe --batch --hidden --max-rows --patience --seed
+    export | m.safetensors n | --lang --precision
+    bench --methods wboit-eq9 --frames 0 --size 8x8 | s.toml | --views --models
+    run --size 8x8 --rows 100 --epochs 1 | s.toml | --seed
+    inspect | s.toml d m.safetensors cups |
+    seal | d g |
+    stress --cases deep --methods wboit-eq9 | | --models
+    doctor | | --adapter";
 
 fn pick(random: &mut Random, from: &str) -> String {
     let all: Vec<&str> = from.split(' ').collect();
@@ -141,7 +121,9 @@ fn folder(ours: &Folder, random: &mut Random) -> Folder {
 
 /// A command line, and what it names as outputs.
 fn line(random: &mut Random) -> (Vec<String>, Vec<String>) {
-    let (start, inputs, flags) = LINES[random.below(LINES.len())];
+    let lines: Vec<&str> = LINES.trim().lines().collect();
+    let mut fields = lines[random.below(lines.len())].split('|').map(str::trim);
+    let [start, inputs, flags] = [(); 3].map(|()| fields.next().unwrap());
     let mut line: Vec<String> = start.split(' ').map(str::to_owned).collect();
     let command = line[0].clone();
     let (mut more, mut outputs) = (Vec::new(), Vec::new());
@@ -172,35 +154,15 @@ fn line(random: &mut Random) -> (Vec<String>, Vec<String>) {
 
 /// Runs a command, but not for ever.
 fn run(folder: &Folder, arguments: &[String]) -> Output {
-    let beside = |ending| folder.path().with_extension(ending);
-    let to = |ending| std::fs::File::create(beside(ending)).unwrap();
     let mut command = folder.command_of(arguments);
-    command
-        .stdin(Stdio::null())
-        .stdout(to("out"))
-        .stderr(to("err"));
-    let mut child = command.spawn().unwrap();
-    let start = Instant::now();
-    let status = loop {
-        if let Some(status) = child.try_wait().unwrap() {
-            break status;
-        }
-        if start.elapsed() > LONGEST {
-            child.kill().unwrap();
-            panic!("{arguments:?} does not end");
-        }
-        std::thread::sleep(Duration::from_millis(5));
-    };
-    let [stdout, stderr] = ["out", "err"].map(|ending| {
-        let bytes = std::fs::read(beside(ending)).unwrap();
-        std::fs::remove_file(beside(ending)).unwrap();
-        bytes
-    });
-    Output {
-        status,
-        stdout,
-        stderr,
-    }
+    command.stdin(Stdio::null());
+    command.stdout(Stdio::piped()).stderr(Stdio::piped());
+    let child = command.spawn().unwrap();
+    let (done, output) = mpsc::channel();
+    std::thread::spawn(move || done.send(child.wait_with_output()));
+    let output = output.recv_timeout(LONGEST);
+    let output = output.unwrap_or_else(|_| panic!("{arguments:?} does not end"));
+    output.unwrap()
 }
 
 fn check(ours: &Folder, seed: u64) -> i32 {

@@ -1,9 +1,6 @@
 //! Outputs never destroy: what is replaced is said, and a signal leaves whole files or none. What is refused is in `command_line.rs`.
-#![allow(clippy::unwrap_used, reason = "a failing test may panic")]
 
-mod common;
-
-use common::{Folder, SCENE};
+use crate::common::{Folder, SCENE};
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -68,20 +65,14 @@ fn signals_end_every_command() {
         all.filter(|(path, _)| !kept(path)).collect()
     };
     let before = files();
-    for (line, signal, code) in [
-        (
-            "render sixteen-050 --size 4096x4096 --out a.png",
-            "INT",
-            130,
-        ),
-        ("inspect vase --time", "TERM", 143),
-        ("stress --out s", "TERM", 143),
-        ("bench sixteen-050 --out b", "INT", 130),
-        (
-            "train d --epochs 1000000 --recipe small --out n",
-            "INT",
-            130,
-        ),
+    const INT: (&str, i32) = ("INT", 130);
+    const TERM: (&str, i32) = ("TERM", 143);
+    for (line, (signal, code)) in [
+        ("render sixteen-050 --size 4096x4096 --out a.png", INT),
+        ("inspect vase --time", TERM),
+        ("stress --out s", TERM),
+        ("bench sixteen-050 --out b", INT),
+        ("train d --epochs 1000000 --recipe small --out n", INT),
     ] {
         let mut command = folder.command(line);
         let child = command.stdout(Stdio::null()).stderr(Stdio::piped());

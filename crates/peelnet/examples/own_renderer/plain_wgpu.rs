@@ -95,17 +95,12 @@ impl Program {
     }
 
     fn pipeline(&self, pass: &Pass<'_>) -> wgpu::RenderPipeline {
-        let targets: Vec<_> = pass
-            .targets
-            .iter()
-            .map(|target| {
-                Some(wgpu::ColorTargetState {
-                    format: target.texture.format(),
-                    blend: target.blend,
-                    write_mask: wgpu::ColorWrites::ALL,
-                })
+        let states = pass.targets.iter().map(|target| {
+            Some(wgpu::ColorTargetState {
+                blend: target.blend,
+                ..target.texture.format().into()
             })
-            .collect();
+        });
         let [vertex, fragment] = pass.entry_points;
         self.device
             .create_render_pipeline(&wgpu::RenderPipelineDescriptor {
@@ -127,7 +122,7 @@ impl Program {
                     module: &self.module,
                     entry_point: Some(fragment),
                     compilation_options: wgpu::PipelineCompilationOptions::default(),
-                    targets: &targets,
+                    targets: &states.collect::<Vec<_>>(),
                 }),
                 multiview_mask: None,
                 cache: None,
@@ -137,39 +132,34 @@ impl Program {
     /// Records a pass.
     pub fn draw(&mut self, pass: &Pass<'_>) {
         let pipeline = self.pipeline(pass);
-        let entries: Vec<_> = pass
-            .reads
-            .iter()
-            .map(|&(binding, target)| wgpu::BindGroupEntry {
-                binding,
-                resource: wgpu::BindingResource::TextureView(&target.view),
+        let attachments = pass.targets.iter().map(|target| {
+            Some(wgpu::RenderPassColorAttachment {
+                view: &target.view,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(target.clear),
+                    store: wgpu::StoreOp::Store,
+                },
             })
-            .collect();
-        let attachments: Vec<_> = pass
-            .targets
-            .iter()
-            .map(|target| {
-                Some(wgpu::RenderPassColorAttachment {
-                    view: &target.view,
-                    depth_slice: None,
-                    resolve_target: None,
-                    ops: wgpu::Operations {
-                        load: wgpu::LoadOp::Clear(target.clear),
-                        store: wgpu::StoreOp::Store,
-                    },
-                })
-            })
-            .collect();
+        });
         let mut recorded = self.encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            color_attachments: &attachments,
+            color_attachments: &attachments.collect::<Vec<_>>(),
             ..Default::default()
         });
         recorded.set_pipeline(&pipeline);
-        if !entries.is_empty() {
+        if !pass.reads.is_empty() {
+            let entries = pass
+                .reads
+                .iter()
+                .map(|(binding, target)| wgpu::BindGroupEntry {
+                    binding: *binding,
+                    resource: wgpu::BindingResource::TextureView(&target.view),
+                });
             let group = self.device.create_bind_group(&wgpu::BindGroupDescriptor {
                 label: None,
                 layout: &pipeline.get_bind_group_layout(0),
-                entries: &entries,
+                entries: &entries.collect::<Vec<_>>(),
             });
             recorded.set_bind_group(0, &group, &[]);
         }

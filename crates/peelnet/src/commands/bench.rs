@@ -46,17 +46,15 @@ pub(super) fn run(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure
     } else {
         let scenes = context.scenes(&args.scenes)?;
         context.begin(&mut outputs, &scenes)?;
-        let comparison = Comparison {
-            methods: args.methods.as_deref(),
-            models: &args.models,
-            size: args.size,
+        let plan = Plan {
             samples: args.samples,
-            views: args.views,
+            views: args.views.map(|n| n as usize),
             frames: args.frames,
-            out: Some(&args.out),
-            resume: args.resume,
+            ..Plan::new(args.size, &[])
         };
-        comparison.measure(context, &scenes)?
+        let named = args.methods.as_deref();
+        let out = Some((args.out.as_path(), args.resume));
+        measure(context, &scenes, named, &args.models, plan, out)?
     };
     results.write(&args.out)?;
     // Drawing older results again ends no interrupted run.
@@ -68,15 +66,17 @@ pub(super) fn run(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure
         .result(|| results.table().plain(), || json!(results))
 }
 
-/// Writes results of any kind into a folder, and shows them.
+/// Writes what was measured into a folder, and shows it.
 pub(super) fn report<T: Measurement>(
     context: &Context<'_>,
+    gpu: &Gpu,
     out: &Path,
-    results: &Results<T>,
-    text: impl FnOnce() -> String,
+    measured: T,
+    text: impl FnOnce(&Results<T>) -> String,
 ) -> Result<(), Failure> {
+    let results = Results::new(Machine::of(gpu), command_line(), measured);
     results.write(out)?;
-    context.console.result(text, || json!(results))
+    context.console.result(|| text(&results), || json!(results))
 }
 
 /// The files and the pictures that a bench of any kind writes.
@@ -86,8 +86,12 @@ fn outputs(context: &Context<'_>, args: &BenchArgs, files: &[&str]) -> Result<Ou
     Ok(outputs)
 }
 
-/// Shows the frames of a comparison on a bar, and warns of methods that are left out.
-pub(super) fn show<'a>(context: &'a Context<'_>, bar: &'a Bar) -> impl FnMut(Progress) + 'a {
+/// Shows the frames of a comparison on a bar of this name, and warns of methods that are left out.
+pub(super) fn show<'a>(
+    context: &'a Context<'_>,
+    name: &'static str,
+) -> impl FnMut(Progress) + 'a {
+    let bar = Bar::new(context.console, name, 0);
     move |event| match event {
         Progress::Drawn { done, total, what } => bar.set(done, total, what),
         Progress::LeftOut(what) => context.console.warn(what),
@@ -103,23 +107,22 @@ fn scale(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure> {
     let named = args.methods.as_deref();
     let (Compared { methods, .. }, learned) =
         compared(context, &gpu, named, &args.models, one_of_each)?;
-    let bar = Bar::new(context.console, "scaling", 0);
     let plan = Plan {
         learned: &learned,
         frames: args.frames,
         ..Plan::new(args.size, &methods)
     };
-    let scaling = scaling::measure(&gpu, &plan, context.stop, &mut show(context, &bar))?;
-    drop(bar);
-    let results = Results::new(Machine::of(&gpu), command_line(), scaling);
-    report(context, &args.out, &results, || results.table().plain())
+    let scaling = scaling::measure(&gpu, &plan, context.stop, &mut show(context, "scaling"))?;
+    report(context, &gpu, &args.out, scaling, |r| r.table().plain())
 }
 
 /// What effects cost.
 fn measure_effects(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure> {
     let mut outputs = outputs(context, args, &Results::<Effects>::files())?;
     let scenes = if args.scenes.is_empty() {
-        context.shipped(suite::EFFECTS)?
+        let shipped = suite::EFFECTS.iter();
+        let shipped = shipped.map(|file| suite::load_file(file, None));
+        shipped.collect::<Result<_, _>>()?
     } else {
         context.scenes(&args.scenes)?
     };
@@ -131,18 +134,15 @@ fn measure_effects(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failur
         frames: args.frames.max(1),
     };
     let gpu = context.gpu()?;
-    let bar = Bar::new(context.console, "effects", 0);
     let found = effects::measure(
         &gpu,
         &scenes,
         &settings,
         &args.out,
         context.stop,
-        &mut show(context, &bar),
+        &mut show(context, "effects"),
     )?;
-    drop(bar);
-    let results = Results::new(Machine::of(&gpu), command_line(), found);
-    report(context, &args.out, &results, || {
+    report(context, &gpu, &args.out, found, |results| {
         let tables: Vec<String> = results.tables().iter().map(|(.., t)| t.plain()).collect();
         tables.join("\n")
     })
@@ -170,95 +170,69 @@ fn along_path(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure> {
         images: Some(&images),
         ..Plan::new(args.size, &methods)
     };
-    let bar = Bar::new(context.console, "path", 0);
-    let found = path::measure(&gpu, &scenes, &plan, context.stop, &mut show(context, &bar))?;
-    drop(bar);
+    let found = {
+        let show = &mut show(context, "path");
+        path::measure(&gpu, &scenes, &plan, context.stop, show)?
+    };
     context.warn_of_memory(&gpu);
-    let results = Results::new(Machine::of(&gpu), command_line(), found);
-    report(context, &args.out, &results, || results.table().plain())
+    report(context, &gpu, &args.out, found, |r| r.table().plain())
 }
 
-/// What is compared, and how.
-pub(super) struct Comparison<'a> {
-    /// The methods, all without any.
-    pub(super) methods: Option<&'a [MethodSpec]>,
-    /// Model files of learned methods.
-    pub(super) models: &'a [PathBuf],
-    pub(super) size: [u32; 2],
-    pub(super) samples: u32,
-    pub(super) views: Option<u32>,
-    pub(super) frames: u32,
-    /// Where pictures and the rows of finished views go.
-    pub(super) out: Option<&'a Path>,
-    pub(super) resume: bool,
-}
-
-impl Comparison<'_> {
-    /// Compares the methods on scenes.
-    ///
-    /// # Errors
-    /// Whatever stopped it.
-    pub(super) fn measure(
-        &self,
-        context: &Context<'_>,
-        scenes: &[Scene],
-    ) -> Result<Results<Bench>, Failure> {
-        let gpu = context.gpu()?;
-        let every = MethodSpec::compared;
-        let (mut chosen, learned) = compared(context, &gpu, self.methods, self.models, every)?;
-        // What times are ratios to.
-        let base: MethodSpec = BASE.parse()?;
-        if !chosen.methods.contains(&base) {
-            chosen.methods.push(base);
-        }
-        let images = self.out.map(|folder| folder.join("images"));
-        let plan = Plan {
-            size: self.size,
-            samples: self.samples,
-            methods: &chosen.methods,
-            learned: &learned,
-            models: &chosen.models,
-            lenient: self.methods.is_none(),
-            views: self.views.map(|n| n as usize),
-            frames: self.frames,
-            images: images.as_deref(),
-        };
-        // What must be the same for an interrupted run to be resumed.
-        let names: Vec<String> = plan.methods.iter().map(ToString::to_string).collect();
-        let settings = json!({
-            "machine": Machine::of(&gpu),
-            "size": plan.size,
-            "samples": plan.samples,
-            "frames": plan.frames,
-            "views": plan.views,
-            "methods": names,
-            "models": plan.learned.iter().map(|l| &l.wgsl).collect::<Vec<_>>(),
-            "scenes": scenes.iter().map(|s| &s.hash).collect::<Vec<_>>(),
-        });
-        let hash = settings_hash(&settings);
-        let partial = match self.out {
-            Some(folder) if self.resume => {
-                if let Some(finished) = finished(context, folder, &hash)? {
-                    return Ok(finished);
-                }
-                Partial::resume(folder, settings)?
-            }
-            out => Partial::new(out, settings),
-        };
-        let bar = Bar::new(context.console, "bench", 0);
-        let mut measured = bench_watched(
-            &gpu,
-            scenes,
-            &plan,
-            partial,
-            context.stop,
-            &mut show(context, &bar),
-        )?;
-        drop(bar);
-        measured.settings = Some(hash);
-        context.warn_of_memory(&gpu);
-        Ok(Results::new(Machine::of(&gpu), command_line(), measured))
+/// Compares methods on scenes: those named, or all, with these model files. `out` is where pictures and the rows of finished views go, and
+/// whether a run there is resumed; `plan` has the rest.
+pub(super) fn measure(
+    context: &Context<'_>,
+    scenes: &[Scene],
+    named: Option<&[MethodSpec]>,
+    files: &[PathBuf],
+    plan: Plan<'_>,
+    out: Option<(&Path, bool)>,
+) -> Result<Results<Bench>, Failure> {
+    let gpu = context.gpu()?;
+    let (mut chosen, learned) = compared(context, &gpu, named, files, MethodSpec::compared)?;
+    // What times are ratios to.
+    let base: MethodSpec = BASE.parse()?;
+    if !chosen.methods.contains(&base) {
+        chosen.methods.push(base);
     }
+    let images = out.map(|(folder, _)| folder.join("images"));
+    let plan = Plan {
+        methods: &chosen.methods,
+        learned: &learned,
+        models: &chosen.models,
+        lenient: named.is_none(),
+        images: images.as_deref(),
+        ..plan
+    };
+    // What must be the same for an interrupted run to be resumed.
+    let names: Vec<String> = plan.methods.iter().map(ToString::to_string).collect();
+    let settings = json!({
+        "machine": Machine::of(&gpu),
+        "size": plan.size,
+        "samples": plan.samples,
+        "frames": plan.frames,
+        "views": plan.views,
+        "methods": names,
+        "models": plan.learned.iter().map(|l| &l.wgsl).collect::<Vec<_>>(),
+        "scenes": scenes.iter().map(|s| &s.hash).collect::<Vec<_>>(),
+    });
+    let hash = settings_hash(&settings);
+    let partial = match out {
+        Some((folder, true)) => {
+            if let Some(finished) = finished(context, folder, &hash)? {
+                return Ok(finished);
+            }
+            Partial::resume(folder, settings)?
+        }
+        out => Partial::new(out.map(|(folder, _)| folder), settings),
+    };
+    let mut measured = {
+        let show = &mut show(context, "bench");
+        bench_watched(&gpu, scenes, &plan, partial, context.stop, show)?
+    };
+    measured.settings = Some(hash);
+    context.warn_of_memory(&gpu);
+    Ok(Results::new(Machine::of(&gpu), command_line(), measured))
 }
 
 /// The results in a folder of a run with these settings that came to its end; nothing where no run ended there.
@@ -330,9 +304,6 @@ pub(super) fn compared(
 }
 
 /// A bench's `results.json`, or the folder that holds it.
-///
-/// # Errors
-/// If there is none.
 pub(super) fn read(path: &Path) -> Result<Results<Bench>, Failure> {
     let file = if path.is_dir() {
         path.join("results.json")

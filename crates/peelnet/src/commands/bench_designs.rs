@@ -1,16 +1,12 @@
 //! `peelnet bench --designs`: what designs of slabs are worth.
 
-use super::{Context, bench::report, command_line, json_path};
+use super::{Context, bench::report, json_path};
 use crate::cli::BenchArgs;
 use crate::progress::Bar;
 use peelnet::Failure;
 use peelnet_dataset::{Dataset, SplitBy, Subset};
-use peelnet_eval::{
-    Machine,
-    designs::{
-        self, ANCHORED, DESIGNS, Designs, Entry, KBUFFER, MOMENTS, Measured, Reference, Row, Score,
-        View,
-    },
+use peelnet_eval::designs::{
+    self, ANCHORED, DESIGNS, Designs, Entry, KBUFFER, MOMENTS, Measured, Reference, Row, Score,
 };
 use peelnet_files::{Unfinished, printable, shown};
 use peelnet_model::{Model, Recipe};
@@ -42,7 +38,20 @@ pub(super) fn run(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure
     let most = args.views.map(|n| n as usize);
     let views = designs::peel(&gpu, &scenes, args.size, most, context.stop)?;
     context.warn_of_memory(&gpu);
-    let judge = Judge::new(&views)?;
+    // The errors that others are compared with.
+    let anchored = Model::shipped(Recipe::ANCHORED_MEDIUM)?;
+    let mut references: Vec<(&str, Vec<Measured>)> = Vec::new();
+    for (name, model) in [
+        (MOMENTS, None),
+        (KBUFFER, None),
+        (ANCHORED, Some(&anchored)),
+    ] {
+        let method = name.parse()?;
+        let measured = views.iter().map(|view| view.measure_method(&method, model));
+        references.push((name, measured.collect()));
+    }
+    let [moments, kbuffer] = [0, 1].map(|k| references[k].1.as_slice());
+    let score = |measured: &[Measured]| designs::score(&views, measured, moments, kbuffer);
     let scratch = tempfile::tempdir()
         .map_err(|e| Failure::failed(format!("cannot create a temporary folder: {e}")))?;
     let _unfinished = Unfinished::new(scratch.path());
@@ -64,7 +73,7 @@ pub(super) fn run(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure
         drop(data);
         let measured = |model| -> Result<Score, Failure> {
             let measured = views.iter().map(|view| entry.measure(view, model));
-            let score = judge.score(&measured.collect::<Vec<_>>());
+            let score = score(&measured.collect::<Vec<_>>());
             context.check_interrupt()?;
             Ok(score)
         };
@@ -77,19 +86,24 @@ pub(super) fn run(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure
     }
     drop(bar);
     let found = Designs {
-        file: args
-            .designs_file
-            .as_ref()
-            .map_or_else(|| DESIGNS.to_owned(), |path| json_path(path)),
+        file: match &args.designs_file {
+            Some(path) => json_path(path),
+            None => DESIGNS.to_owned(),
+        },
         trained_on,
         judged_on: scenes.iter().map(|s| s.name.clone()).collect(),
         learning_rate: configs[0].learning_rate,
         epochs: configs[0].epochs,
-        references: judge.references(),
+        references: references
+            .iter()
+            .map(|(name, measured)| Reference {
+                method: (*name).to_owned(),
+                score: score(measured),
+            })
+            .collect(),
         rows,
     };
-    let results = Results::new(Machine::of(&gpu), command_line(), found);
-    report(context, &args.out, &results, || results.table().plain())
+    report(context, &gpu, &args.out, found, |r| r.table().plain())
 }
 
 fn config(entry: &Entry, args: &BenchArgs) -> Config {
@@ -135,45 +149,4 @@ fn check_scenes(
         ));
     }
     Ok(trained.into_iter().collect())
-}
-
-/// The errors that others are compared with.
-struct Judge<'a> {
-    views: &'a [View],
-    moments: Vec<Measured>,
-    kbuffer: Vec<Measured>,
-    anchored: Vec<Measured>,
-}
-
-impl<'a> Judge<'a> {
-    fn new(views: &'a [View]) -> Result<Self, Failure> {
-        let of = |name: &str, model: Option<&Model>| -> Result<Vec<Measured>, Failure> {
-            let method = name.parse()?;
-            let measured = views.iter().map(|view| view.measure_method(&method, model));
-            Ok(measured.collect())
-        };
-        let anchored = Model::shipped(Recipe::ANCHORED_MEDIUM)?;
-        Ok(Self {
-            views,
-            moments: of(MOMENTS, None)?,
-            kbuffer: of(KBUFFER, None)?,
-            anchored: of(ANCHORED, Some(&anchored))?,
-        })
-    }
-
-    fn score(&self, measured: &[Measured]) -> Score {
-        designs::score(self.views, measured, &self.moments, &self.kbuffer)
-    }
-
-    fn references(&self) -> Vec<Reference> {
-        let of = |name: &str, measured: &[Measured]| Reference {
-            method: name.to_owned(),
-            score: self.score(measured),
-        };
-        vec![
-            of(MOMENTS, &self.moments),
-            of(KBUFFER, &self.kbuffer),
-            of(ANCHORED, &self.anchored),
-        ]
-    }
 }

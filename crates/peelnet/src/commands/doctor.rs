@@ -1,7 +1,6 @@
 //! `peelnet doctor`: adapters, features, what will be used and why.
 
 use super::Context;
-use crate::summary_text::Lines;
 use peelnet::Failure;
 use peelnet_files::error_line;
 use peelnet_gpu::adapter::{AdapterReport, INSTALL_HINT, report};
@@ -13,67 +12,66 @@ pub(super) fn run(context: &Context<'_>) -> Result<(), Failure> {
     // Opening the device is the only proof that the driver works.
     let opened = Gpu::open(&context.global.adapter);
     let used = opened.as_ref().ok().map(|gpu| gpu.info.name.clone());
-    context.console.result(
-        || text(&adapters, used.as_deref(), &context.global.adapter),
-        || {
-            json!({
-                "version": env!("CARGO_PKG_VERSION"),
-                "os": std::env::consts::OS,
-                "arch": std::env::consts::ARCH,
-                "cores": std::thread::available_parallelism().map_or(1, usize::from),
-                "used": used,
-                "error": opened.as_ref().err().map(|e| error_line(e)),
-                "install": adapters.is_empty().then_some(INSTALL_HINT),
-                "adapters": adapters,
-            })
-        },
-    )?;
+    let version = env!("CARGO_PKG_VERSION");
+    let (os, arch) = (std::env::consts::OS, std::env::consts::ARCH);
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let text = || {
+        let mut t = format!("peelnet {version} on {os} {arch}, {cores} cores\n");
+        if adapters.is_empty() {
+            t += "\nno GPU adapter: no Vulkan driver is installed\n";
+            t += INSTALL_HINT;
+        }
+        for adapter in &adapters {
+            let is_used = used.as_ref() == Some(&adapter.name);
+            t += &adapter_text(adapter, is_used, &context.global.adapter);
+        }
+        t
+    };
+    context.console.result(text, || {
+        json!({
+            "version": version,
+            "os": os,
+            "arch": arch,
+            "cores": cores,
+            "used": used,
+            "error": opened.as_ref().err().map(|e| error_line(e)),
+            "install": adapters.is_empty().then_some(INSTALL_HINT),
+            "adapters": adapters,
+        })
+    })?;
     opened?;
     Ok(())
 }
 
-fn text(adapters: &[AdapterReport], used: Option<&str>, request: &AdapterRequest) -> String {
-    let mut t = Lines::default();
-    t.line(format!(
-        "peelnet {} on {} {}, {} cores",
-        env!("CARGO_PKG_VERSION"),
-        std::env::consts::OS,
-        std::env::consts::ARCH,
-        std::thread::available_parallelism().map_or(1, usize::from)
-    ));
-    if adapters.is_empty() {
-        t.line("\nno GPU adapter: no Vulkan driver is installed");
-        t.line(INSTALL_HINT);
+fn adapter_text(adapter: &AdapterReport, is_used: bool, request: &AdapterRequest) -> String {
+    let mark = if is_used { '*' } else { ' ' };
+    let why = match (is_used, request) {
+        (true, AdapterRequest::Auto) => format!("used: {}", adapter.why),
+        (true, _) => "used: --adapter asks for it".to_owned(),
+        (false, AdapterRequest::Auto) => format!("not used: {}", adapter.why),
+        (false, _) => "not used: --adapter asks for another".to_owned(),
+    };
+    let features = match adapter.features.join(", ") {
+        none if none.is_empty() => "none".to_owned(),
+        features => features,
+    };
+    let mut t = format!(
+        "\n{mark} {} ({}, {})\n    \
+         driver            {}\n    \
+         {why}\n    \
+         storage binding   {} MiB at most: larger frames are drawn in tiles\n    \
+         largest frame     {} pixels a side\n    \
+         features          {features}\n",
+        adapter.name,
+        adapter.kind,
+        adapter.backend,
+        adapter.driver,
+        adapter.max_storage_binding >> 20,
+        adapter.max_texture_side
+    );
+    for missing in &adapter.missing {
+        let (name, without) = (missing.name, missing.without);
+        t += &format!("    missing           {name}: {without}\n");
     }
-    for adapter in adapters {
-        let is_used = used == Some(adapter.name.as_str());
-        let mark = if is_used { '*' } else { ' ' };
-        let (kind, backend) = (&adapter.kind, &adapter.backend);
-        t.line(format!("\n{mark} {} ({kind}, {backend})", adapter.name));
-        t.line(format!("    {:<17} {}", "driver", adapter.driver));
-        let why = match (is_used, request) {
-            (true, AdapterRequest::Auto) => format!("used: {}", adapter.why),
-            (true, _) => "used: --adapter asks for it".to_owned(),
-            (false, AdapterRequest::Auto) => format!("not used: {}", adapter.why),
-            (false, _) => "not used: --adapter asks for another".to_owned(),
-        };
-        t.line(format!("    {why}"));
-        let mut field = |name: &str, text: &str| t.line(format!("    {name:<17} {text}"));
-        let mebibytes = adapter.max_storage_binding >> 20;
-        field(
-            "storage binding",
-            &format!("{mebibytes} MiB at most: larger frames are drawn in tiles"),
-        );
-        let side = adapter.max_texture_side;
-        field("largest frame", &format!("{side} pixels a side"));
-        let features = match adapter.features.join(", ") {
-            none if none.is_empty() => "none".to_owned(),
-            features => features,
-        };
-        field("features", &features);
-        for missing in &adapter.missing {
-            field("missing", &format!("{}: {}", missing.name, missing.without));
-        }
-    }
-    t.0
+    t
 }

@@ -23,23 +23,21 @@ pub(super) fn run(context: &Context<'_>, args: &ExportArgs) -> Result<(), Failur
     let inputs = model.meta.inputs.len();
     let adapter = &gpu.info.name;
     let precision = PRECISIONS.iter().find(|(_, p)| *p == args.precision);
-    context.console.result(
-        || {
-            let out = shown(&args.out);
-            format!("{out}: {inputs} inputs, verified on {adapter}: {verification}")
-        },
-        || {
-            json!({
-                "out": json_path(&args.out),
-                "model": json_path(&args.model),
-                "recipe": model.meta.recipe,
-                "lang": args.lang.name(),
-                "precision": precision.map(|(name, _)| name),
-                "adapter": adapter,
-                "samples": verification.samples,
-                "worst_absolute": verification.worst_absolute,
-                "worst_relative_to_tolerance": verification.worst_relative_to_tolerance,
-            })
-        },
-    )
+    let text = || {
+        let out = shown(&args.out);
+        format!("{out}: {inputs} inputs, verified on {adapter}: {verification}")
+    };
+    context.console.result(text, || {
+        json!({
+            "out": json_path(&args.out),
+            "model": json_path(&args.model),
+            "recipe": model.meta.recipe,
+            "lang": args.lang.name(),
+            "precision": precision.map(|(name, _)| name),
+            "adapter": adapter,
+            "samples": verification.samples,
+            "worst_absolute": verification.worst_absolute,
+            "worst_relative_to_tolerance": verification.worst_relative_to_tolerance,
+        })
+    })
 }

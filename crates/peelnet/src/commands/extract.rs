@@ -34,29 +34,27 @@ pub(super) fn run(context: &Context<'_>, args: &ExtractArgs) -> Result<(), Failu
         }
     })?;
     let m = &report.manifest;
-    context.console.result(
-        || text(out, &report),
-        || {
-            json!({
-                "out": json_path(out),
-                "rows": m.rows,
-                "pixels": m.pixels,
-                "parts": m.parts.len(),
-                "hash": m.hash,
-                "sealed": m.is_whole(),
-                "work_items": m.work_items,
-                "parts_written": report.parts,
-                "rows_written": report.rows,
-                "lost_fragments": report.lost,
-                "coplanar_ties": report.coplanar,
-                "tiles": report.tiles,
-                "gpu_ms": report.gpu_micros / 1e3,
-                "wall_ms": report.wall_micros / 1e3,
-                "rows_by_scene": m.rows_by_scene(),
-                "adapter": m.adapter,
-            })
-        },
-    )
+    let text = || text(out, &report);
+    context.console.result(text, || {
+        json!({
+            "out": json_path(out),
+            "rows": m.rows,
+            "pixels": m.pixels,
+            "parts": m.parts.len(),
+            "hash": m.hash,
+            "sealed": m.is_whole(),
+            "work_items": m.work_items,
+            "parts_written": report.parts,
+            "rows_written": report.rows,
+            "lost_fragments": report.lost,
+            "coplanar_ties": report.coplanar,
+            "tiles": report.tiles,
+            "gpu_ms": report.gpu_micros / 1e3,
+            "wall_ms": report.wall_micros / 1e3,
+            "rows_by_scene": m.rows_by_scene(),
+            "adapter": m.adapter,
+        })
+    })
 }
 
 /// Finished parts into one dataset.

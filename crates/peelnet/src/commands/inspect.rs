@@ -2,7 +2,7 @@
 
 use super::{Context, bench::EFFECTS_METHOD, few, json_path, losses};
 use crate::cli::InspectArgs;
-use crate::summary_text::{Lines, summary_text};
+use crate::summary_text::summary_text;
 use peelnet::Failure;
 use peelnet_dataset::{Dataset, Summary, is_remote};
 use peelnet_eval::effects::{self, Cost, Settings};
@@ -62,31 +62,25 @@ fn dataset(context: &Context<'_>, path: &Path) -> Result<(), Failure> {
     let summary = Summary::of(&dataset)?;
     let m = dataset.manifest();
     let text = || {
-        let mut t = Lines::default();
-        t.field("dataset", shown(path));
-        t.field(
-            "written by",
-            format!(
-                "peelnet {} on {} ({} peeling, {} of the pixels, seed {})",
-                printable(&m.tool_version),
-                printable(&m.adapter),
-                printable(&m.peel),
-                m.pixels_fraction,
-                m.seed,
-            ),
+        let [version, adapter, peel] = [&m.tool_version, &m.adapter, &m.peel].map(|t| printable(t));
+        let mut t = format!(
+            "dataset     {}\n\
+             written by  peelnet {version} on {adapter} ({peel} peeling, {} of the pixels, seed {})\n\
+             command     {}\n",
+            shown(path),
+            m.pixels_fraction,
+            m.seed,
+            one_line(&m.command)
         );
-        t.field("command", one_line(&m.command));
         let mut census = m.scenes.iter().filter(|s| !s.effects.is_empty()).peekable();
         if census.peek().is_some() {
-            t.line("\neffects that the scenes needed");
+            t += "\neffects that the scenes needed\n";
         }
         for scene in census {
-            let effects = scene.effects.join(", ");
-            let name = printable(&scene.name);
-            t.line(format!("  {name:<33} {}", one_line(&effects)));
+            let (name, effects) = (printable(&scene.name), scene.effects.join(", "));
+            t += &format!("  {name:<33} {}\n", one_line(&effects));
         }
-        t.line("");
-        t.0 + &summary_text(&summary)
+        t + "\n" + &summary_text(&summary)
     };
     context.console.result(text, || {
         let mut value = json!(summary);
@@ -115,21 +109,6 @@ fn dataset(context: &Context<'_>, path: &Path) -> Result<(), Failure> {
     )))
 }
 
-/// What is known of a scene.
-struct Known {
-    scene: Scene,
-    census: Census,
-    /// Triangles, and those of transparent surfaces.
-    triangles: [u64; 2],
-    /// What an exact frame counted.
-    counted: Option<FrameStats>,
-    /// Bytes of the shader text of all surfaces.
-    shader: usize,
-    /// How many of them each effect brings.
-    brought: HashMap<&'static str, i64>,
-    costs: Vec<Cost>,
-}
-
 fn scene(context: &Context<'_>, path: &Path, time: bool) -> Result<(), Failure> {
     let scene = context.scene(path, None)?;
     let mut triangles = [0, 0];
@@ -140,17 +119,20 @@ fn scene(context: &Context<'_>, path: &Path, time: bool) -> Result<(), Failure> 
             triangles[1] += if material.is_opaque() { 0 } else { n };
         }
     }
-    let counted = count(context, &scene).map_err(|failure| {
+    let counted = count(context, &scene).unwrap_or_else(|failure| {
         // The rest is known without a GPU.
         let warning = format!("fragments were not counted: {failure}");
         context.console.warn(warning);
+        FrameStats::default()
     });
     let shader = shader_bytes(&scene)?;
+    // How many of these bytes each effect brings.
     let brought = Effect::ALL.map(|effect| {
         let without = shader_bytes(&scene.without(effect)).unwrap_or(shader);
         (effect.name(), shader as i64 - without as i64)
     });
     let census = Census::of(&scene);
+    let brought = HashMap::from(brought);
     let mut costs = Vec::new();
     if time {
         let settings = Settings {
@@ -164,43 +146,33 @@ fn scene(context: &Context<'_>, path: &Path, time: bool) -> Result<(), Failure> 
         }
     }
     context.check_interrupt()?;
-    let known = Known {
-        census,
-        scene,
-        triangles,
-        counted: counted.ok(),
-        shader,
-        brought: brought.into_iter().collect(),
-        costs,
+    let text = || {
+        let head = scene_text(&scene, triangles, &counted, &census, shader);
+        head + &effects_text(&census, &brought) + &costs_text(&costs)
     };
-    let Known { scene, census, .. } = &known;
-    let counted = known.counted.as_ref();
-    context.console.result(
-        || scene_text(&known),
-        || {
-            json!({
-                "kind": "scene",
-                "effects": census.effects,
-                "shader_bytes": shader,
-                "shader_bytes_brought": known.brought,
-                "variants": census.variants.iter().map(|v| v.features()).collect::<Vec<_>>(),
-                "costs": known.costs,
-                "path": json_path(path),
-                "name": scene.name,
-                "hash": scene.hash,
-                "held_out": scene.held_out,
-                "views": scene.views.len(),
-                "lights": scene.lights.len(),
-                "objects": scene.objects.len(),
-                "triangles": triangles[0],
-                "transparent_triangles": triangles[1],
-                "fragments": counted.and_then(|s| s.fragments),
-                "max_layers": counted.and_then(|s| s.max_layers),
-                "counted_at": {"view": 0, "width": COUNTED_AT[0], "height": COUNTED_AT[1]},
-                "warnings": scene.warnings,
-            })
-        },
-    )
+    context.console.result(text, || {
+        json!({
+            "kind": "scene",
+            "effects": census.effects,
+            "shader_bytes": shader,
+            "shader_bytes_brought": brought,
+            "variants": census.variants.iter().map(|v| v.features()).collect::<Vec<_>>(),
+            "costs": costs,
+            "path": json_path(path),
+            "name": scene.name,
+            "hash": scene.hash,
+            "held_out": scene.held_out,
+            "views": scene.views.len(),
+            "lights": scene.lights.len(),
+            "objects": scene.objects.len(),
+            "triangles": triangles[0],
+            "transparent_triangles": triangles[1],
+            "fragments": counted.fragments,
+            "max_layers": counted.max_layers,
+            "counted_at": {"view": 0, "width": COUNTED_AT[0], "height": COUNTED_AT[1]},
+            "warnings": scene.warnings,
+        })
+    })
 }
 
 /// Draws view 0 exactly, which counts its fragments.
@@ -213,66 +185,76 @@ fn count(context: &Context<'_>, scene: &Scene) -> Result<FrameStats, Failure> {
     Ok(renderer.image(&mut prepared, camera)?.stats)
 }
 
-fn scene_text(known: &Known) -> String {
-    let Known { scene, census, .. } = known;
-    let mut t = Lines::default();
-    t.field("scene", printable(&scene.name));
-    t.field("file", shown(&scene.source));
-    t.field("hash", &scene.hash);
-    let held_out = ["no", "yes: never trained on"][usize::from(scene.held_out)];
-    t.field("held out", held_out);
-    t.field("views", scene.views.len());
-    t.field("lights", scene.lights.len());
-    t.field("objects", scene.objects.len());
-    let [all, transparent] = known.triangles.map(thousands);
-    t.field(
-        "triangles",
-        format!("{all}, of which {transparent} transparent"),
-    );
-    let counted = known.counted.as_ref();
-    if let Some((n, most)) = counted.and_then(|s| Some((s.fragments?, s.max_layers?))) {
-        let [width, height] = COUNTED_AT;
+fn scene_text(
+    scene: &Scene,
+    triangles: [u64; 2],
+    counted: &FrameStats,
+    census: &Census,
+    shader: usize,
+) -> String {
+    let [width, height] = COUNTED_AT;
+    let [all, transparent] = triangles.map(thousands);
+    let counted = counted.fragments.zip(counted.max_layers);
+    let fragments = counted.map_or_else(String::new, |(n, most)| {
         let n = thousands(n);
-        t.field(
-            "fragments",
-            format!("{n} in view 0 at {width}x{height}, up to {most} a pixel"),
-        );
-    }
-    t.field(
-        "pipelines",
-        format!(
-            "at most {} in a pass over the surfaces, linked from {} bytes of shader text (blended)",
-            census.variants.len(),
-            thousands(known.shader as u64)
-        ),
-    );
-    t.line("\neffect                  on   needed by");
+        format!("fragments   {n} in view 0 at {width}x{height}, up to {most} a pixel\n")
+    });
+    format!(
+        "scene       {}\n\
+         file        {}\n\
+         hash        {}\n\
+         held out    {}\n\
+         views       {}\n\
+         lights      {}\n\
+         objects     {}\n\
+         triangles   {all}, of which {transparent} transparent\n\
+         {fragments}\
+         pipelines   at most {} in a pass over the surfaces, linked from {} bytes of shader text (blended)\n",
+        printable(&scene.name),
+        shown(&scene.source),
+        scene.hash,
+        ["no", "yes: never trained on"][usize::from(scene.held_out)],
+        scene.views.len(),
+        scene.lights.len(),
+        scene.objects.len(),
+        census.variants.len(),
+        thousands(shader as u64)
+    )
+}
+
+fn effects_text(census: &Census, brought: &HashMap<&str, i64>) -> String {
+    let mut t = "\neffect                  on   needed by\n".to_owned();
     for effect in &census.effects {
         let on = if effect.on { "yes" } else { "–" };
         let why = few(&effect.why, 4);
-        t.line(format!("{:<23} {on:<4} {why}", effect.name));
+        t += &format!("{:<23} {on:<4} {why}\n", effect.name);
         if effect.on {
-            let bytes = known.brought.get(effect.name).filter(|bytes| **bytes != 0);
+            let bytes = brought.get(effect.name).filter(|bytes| **bytes != 0);
             let bytes = bytes.map(|bytes| format!("; {bytes:+} bytes of shader text"));
             let bytes = bytes.unwrap_or_default();
-            t.line(format!("{:<28} adds {}{bytes}", "", effect.adds));
+            t += &format!("{:<28} adds {}{bytes}\n", "", effect.adds);
         }
     }
-    if !known.costs.is_empty() {
+    t
+}
+
+fn costs_text(costs: &[Cost]) -> String {
+    let mut t = String::new();
+    if !costs.is_empty() {
         let [width, height] = TIMED_AT;
-        t.line(format!(
-            "\neffect                  with ms  without ms  ratio  passes  bytes a pixel   (wboit-eq9, view 0, {width}x{height}, medians of {TIMED_FRAMES} frames in turn)"
-        ));
+        t = format!(
+            "\neffect                  with ms  without ms  ratio  passes  bytes a pixel   (wboit-eq9, view 0, {width}x{height}, medians of {TIMED_FRAMES} frames in turn)\n"
+        );
     }
-    for c in &known.costs {
+    for c in costs {
         let passes = beside(c.passes_with.into(), c.passes_without.into());
         let bytes = beside(c.bytes_with, c.bytes_without);
-        t.line(format!(
-            "{:<23} {:>7.2} {:>11.2} {:>6.2} {passes:>7} {bytes:>14}",
+        t += &format!(
+            "{:<23} {:>7.2} {:>11.2} {:>6.2} {passes:>7} {bytes:>14}\n",
             c.effect, c.ms_with, c.ms_without, c.ratio,
-        ));
+        );
     }
-    t.0
+    t
 }
 
 /// A figure with an effect, and that without where it differs.
@@ -286,79 +268,63 @@ fn beside(with: f64, without: f64) -> String {
 
 fn model(context: &Context<'_>, path: &Path) -> Result<(), Failure> {
     let model = peelnet::load_model(path)?;
-    let hash = model
-        .hash()
-        .map_err(|e| Failure::from(e).about(&shown(path)))?;
-    context.console.result(
-        || model_text(path, &model, &hash),
-        || {
-            json!({
-                "kind": "model",
-                "path": json_path(path),
-                "hash": hash,
-                "method": model.meta.recipe.method,
-                "topology": model.mlp.topology(),
-                "parameters": model.mlp.parameters(),
-                "meta": model.meta,
-            })
-        },
-    )
+    let hash = model.hash();
+    let hash = hash.map_err(|e| Failure::from(e).about(&shown(path)))?;
+    let text = || model_text(path, &model, &hash);
+    context.console.result(text, || {
+        json!({
+            "kind": "model",
+            "path": json_path(path),
+            "hash": hash,
+            "method": model.meta.recipe.method,
+            "topology": model.mlp.topology(),
+            "parameters": model.mlp.parameters(),
+            "meta": model.meta,
+        })
+    })
 }
 
 fn model_text(path: &Path, model: &Model, hash: &str) -> String {
     let Model { meta, mlp, .. } = model;
-    let mut t = Lines::default();
-    t.field("model", shown(path));
-    t.field("hash", hash);
-    t.field(
-        "recipe",
-        format!("{} (method {})", meta.recipe, meta.recipe.method),
-    );
-    t.field(
-        "network",
+    let (recipe, version) = (meta.recipe, printable(&meta.tool_version));
+    let dataset = meta.dataset.as_ref().map(|d| {
+        let (rows, hash) = (thousands(d.rows), printable(&d.hash));
+        let scenes: Vec<_> = d.scenes.iter().map(|scene| printable(scene)).collect();
         format!(
-            "{}, {} parameters, output {}",
-            mlp.topology(),
-            mlp.parameters(),
-            meta.output
-        ),
+            "{rows} rows, hash {hash}\nscenes      {}",
+            scenes.join(", ")
+        )
+    });
+    let mut t = format!(
+        "model       {}\n\
+         hash        {hash}\n\
+         recipe      {recipe} (method {})\n\
+         network     {}, {} parameters, output {}\n\
+         trained by  peelnet {version}, seed {}, {}\n\
+         dataset     {}\n",
+        shown(path),
+        recipe.method,
+        mlp.topology(),
+        mlp.parameters(),
+        meta.output,
+        meta.seed,
+        counted(meta.epochs.into(), "epoch"),
+        dataset.as_deref().unwrap_or("none: made by hand")
     );
-    t.field(
-        "trained by",
-        format!(
-            "peelnet {}, seed {}, {}",
-            printable(&meta.tool_version),
-            meta.seed,
-            counted(meta.epochs.into(), "epoch")
-        ),
-    );
-    match &meta.dataset {
-        Some(d) => {
-            let (rows, hash) = (thousands(d.rows), printable(&d.hash));
-            t.field("dataset", format!("{rows} rows, hash {hash}"));
-            let scenes: Vec<_> = d.scenes.iter().map(|scene| printable(scene)).collect();
-            t.field("scenes", scenes.join(", "));
-        }
-        None => t.field("dataset", "none: made by hand"),
-    }
     for (name, loss) in losses(model) {
-        t.field("loss", format!("{loss:.6} ({name})"));
+        t += &format!("loss        {loss:.6} ({name})\n");
     }
     for (scene, error) in &meta.held_out {
         let scene = printable(scene);
-        t.field("held out", format!("{scene}: mean error of T {error:.4}"));
+        t += &format!("held out    {scene}: mean error of T {error:.4}\n");
     }
-    t.line("\ninputs               unit              offset        scale    seen in training");
+    t += "\ninputs               unit              offset        scale    seen in training\n";
     for input in &meta.inputs {
-        t.line(format!(
-            "  {:<18} {:<14} {:>10.4} {:>12.4}    {} … {}",
-            input.name,
-            printable(&input.unit),
-            input.offset,
-            input.scale,
-            input.min,
-            input.max
-        ));
+        let unit = printable(&input.unit);
+        t += &format!(
+            "  {:<18} {unit:<14} {:>10.4} {:>12.4}    {} … {}\n",
+            input.name, input.offset, input.scale, input.min, input.max
+        );
     }
-    t.0
+    t
 }

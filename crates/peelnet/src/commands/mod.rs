@@ -23,26 +23,20 @@ use peelnet_gpu::Gpu;
 use peelnet_model::Model;
 use peelnet_render::{ImageFormat, LearnedWeight, MethodSpec};
 use peelnet_report::kind_of;
-use peelnet_scene::{
-    Scene, SceneError,
-    suite::{self, SceneFile},
-};
+use peelnet_scene::{Scene, SceneError, suite};
 use std::path::{Path, PathBuf};
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// What every command works with.
 #[derive(Clone, Copy, Debug)]
 pub struct Context<'a> {
-    /// Output.
     pub console: Console,
-    /// The global flags.
     pub global: &'a Global,
     /// Set by a signal.
     pub stop: &'static AtomicBool,
 }
 
 impl Context<'_> {
-    /// Opens the adapter that the flags ask for.
     fn gpu(&self) -> Result<Gpu, Failure> {
         Ok(Gpu::open(&self.global.adapter)?)
     }
@@ -83,7 +77,6 @@ impl Context<'_> {
         Ok(())
     }
 
-    /// Loads scenes and shows their warnings.
     fn scenes(&self, paths: &[PathBuf]) -> Result<Vec<Scene>, Failure> {
         paths.iter().map(|path| self.scene(path, None)).collect()
     }
@@ -119,17 +112,6 @@ impl Context<'_> {
         }
     }
 
-    /// Loads scenes that ship.
-    fn shipped<'f>(
-        &self,
-        files: impl IntoIterator<Item = &'f SceneFile>,
-    ) -> Result<Vec<Scene>, Failure> {
-        files
-            .into_iter()
-            .map(|file| Ok(suite::load_file(file, None)?))
-            .collect()
-    }
-
     /// The text that a method draws with, of a model's file or the shipped one; none for a method that needs no model.
     fn weight(
         &self,
@@ -159,9 +141,8 @@ impl Context<'_> {
         Ok(())
     }
 
-    /// An error if a signal came.
     fn check_interrupt(&self) -> Result<(), Failure> {
-        if interrupt::requested() {
+        if self.stop.load(Ordering::Relaxed) {
             return Err(Failure::failed(interrupt::MESSAGE));
         }
         Ok(())
@@ -202,10 +183,6 @@ fn command_line() -> String {
     shell_words::join(std::iter::once("peelnet".to_owned()).chain(arguments))
 }
 
-/// Runs the command that was parsed.
-///
-/// # Errors
-/// Whatever stopped it.
 pub fn dispatch(cli: &Cli) -> Result<(), Failure> {
     let context = Context {
         console: Console::new(cli.global.quiet, cli.global.json),

@@ -1,12 +1,10 @@
 //! `peelnet recommend`: the best method within a budget.
 
-use super::{
-    Context,
-    bench::{self, Comparison},
-};
+use super::{Context, bench};
 use crate::cli::RecommendArgs;
 use peelnet::Failure;
 use peelnet_eval::{
+    compare::Plan,
     front::{Point, untimed},
     recommend::{Budget, judged},
     rows::Rows,
@@ -18,17 +16,12 @@ pub(super) fn run(context: &Context<'_>, args: &RecommendArgs) -> Result<(), Fai
     let results = match &args.results {
         Some(path) => bench::read(path)?,
         None => {
-            let comparison = Comparison {
-                methods: None,
-                models: &[],
-                size: args.size,
-                samples: 1,
-                views: None,
+            let plan = Plan {
                 frames: args.frames,
-                out: None,
-                resume: false,
+                ..Plan::new(args.size, &[])
             };
-            comparison.measure(context, std::slice::from_ref(&scene))?
+            let scene = std::slice::from_ref(&scene);
+            bench::measure(context, scene, None, &[], plan, None)?
         }
     };
     let rows = &results.measured.rows;

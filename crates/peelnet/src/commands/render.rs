@@ -58,34 +58,32 @@ pub(super) fn run(context: &Context<'_>, args: &RenderArgs) -> Result<(), Failur
     }
     context.warn_of_memory(&gpu);
     let adapter = &gpu.info.name;
-    context.console.result(
-        || text(args, &method, adapter, &frame),
-        || {
-            json!({
-                "out": json_path(&args.out),
-                "scene": scene.name,
-                "method": method,
-                "highlight": args.highlight,
-                "time": (!scene.timeline.is_empty()).then_some(scene.time),
-                "view": args.view,
-                "width": image.width,
-                "height": image.height,
-                "fragments": stats.fragments,
-                "samples": args.samples,
-                "max_layers": stats.max_layers,
-                "lost": stats.lost,
-                "tiles": stats.tiles,
-                "geometry_passes": stats.geometry_passes,
-                "fullscreen_passes": stats.fullscreen_passes,
-                "bytes_per_pixel": stats.bytes_per_pixel,
-                "non_finite_pixels": image.non_finite(),
-                "time_ms": gpu_ms(&frame),
-                "wall_ms": frame.wall_micros / 1e3,
-                "passes": frame.times.iter().map(|t| json!({"label": t.label, "micros": t.micros})).collect::<Vec<_>>(),
-                "adapter": adapter,
-            })
-        },
-    )
+    let text = || text(args, &method, adapter, &frame);
+    context.console.result(text, || {
+        json!({
+            "out": json_path(&args.out),
+            "scene": scene.name,
+            "method": method,
+            "highlight": args.highlight,
+            "time": (!scene.timeline.is_empty()).then_some(scene.time),
+            "view": args.view,
+            "width": image.width,
+            "height": image.height,
+            "fragments": stats.fragments,
+            "samples": args.samples,
+            "max_layers": stats.max_layers,
+            "lost": stats.lost,
+            "tiles": stats.tiles,
+            "geometry_passes": stats.geometry_passes,
+            "fullscreen_passes": stats.fullscreen_passes,
+            "bytes_per_pixel": stats.bytes_per_pixel,
+            "non_finite_pixels": image.non_finite(),
+            "time_ms": gpu_ms(&frame),
+            "wall_ms": frame.wall_micros / 1e3,
+            "passes": frame.times.iter().map(|t| json!({"label": t.label, "micros": t.micros})).collect::<Vec<_>>(),
+            "adapter": adapter,
+        })
+    })
 }
 
 /// GPU time of all passes, where the adapter measures it.

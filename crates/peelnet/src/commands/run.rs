@@ -2,9 +2,8 @@
 
 use super::{Context, bench, command_line, extract, losses, train};
 use crate::cli::RunArgs;
-use crate::progress::Bar;
 use crate::summary_text::{self, summary_text};
-use peelnet::{Failure, weight_of};
+use peelnet::Failure;
 use peelnet_chart::Svg;
 use peelnet_dataset::{Dataset, SplitBy, Summary};
 use peelnet_eval::bench::{bench_watched, trained_on};
@@ -26,8 +25,8 @@ use std::time::Instant;
 /// Shipped scenes whose names begin so are the thesis's family.
 const FAMILY: &str = "sixteen-";
 
-/// Beside each other on the first screen of the report, with [`SHOWN_NETWORKS`]: the base of the times, the exact image,
-/// sorting, weighted blending, moments, and the networks.
+/// Beside each other on the first screen of the report: the base of the times, the exact image, sorting, weighted blending, moments, the
+/// network that the run trains, and shipped ones.
 const SHOWN: [&str; 8] = [
     front::BASE,
     EXACT,
@@ -39,37 +38,33 @@ const SHOWN: [&str; 8] = [
     "deep-large",
 ];
 
-/// Of these the shipped networks are drawn, beside the one that the run trains.
-const SHOWN_NETWORKS: [Recipe; 2] = [Recipe::MEDIUM, Recipe::LARGE];
-
 /// The scene of it: held out, and of another kind than those of the run.
 const SHOWN_SCENE: &str = "foliage-held";
-
-/// The summary of the dataset, for programs and for people.
-const SUMMARY: [&str; 2] = ["dataset-summary.json", "dataset-summary.txt"];
 
 /// Everything that a run writes but its dataset, which has its own way.
 fn outputs(context: &Context<'_>, args: &RunArgs) -> Result<Outputs, Failure> {
     let mut outputs = context.outputs(&args.scenes);
     context.results(&mut outputs, &args.out, &Results::<ThesisRun>::files())?;
     peelnet_dataset::replaces(&args.out.join("dataset"), false)?;
-    let summaries = SUMMARY.map(|name| (name, summary_text::KIND));
-    let networks = [
+    let files = [
+        ("dataset-summary.json", summary_text::KIND),
+        ("dataset-summary.txt", summary_text::KIND),
         ("model.safetensors", peelnet_model::KIND),
         ("model.wgsl", peelnet_export::KIND),
         ("model.json", peelnet_export::JSON_KIND),
         ("loss.csv", CurveFormat::Csv.kind()),
         ("loss.svg", CurveFormat::Svg.kind()),
     ];
-    outputs.folder("--out", &args.out, summaries.into_iter().chain(networks))?;
+    outputs.folder("--out", &args.out, files)?;
     Ok(outputs)
 }
 
 pub(super) fn run(context: &Context<'_>, args: &RunArgs) -> Result<(), Failure> {
     let mut outputs = outputs(context, args)?;
     let scenes = if args.scenes.is_empty() {
-        let all = suite::SCENES.iter();
-        context.shipped(all.filter(|file| file.name.starts_with(FAMILY)))?
+        let family = suite::SCENES.iter().filter(|f| f.name.starts_with(FAMILY));
+        let family = family.map(|file| suite::load_file(file, None));
+        family.collect::<Result<_, _>>()?
     } else {
         context.scenes(&args.scenes)?
     };
@@ -108,7 +103,7 @@ pub(super) fn run(context: &Context<'_>, args: &RunArgs) -> Result<(), Failure> 
     let learned = run.export(&outcome.model)?;
     let images = args.out.join("images");
     let showcase = run.showcase(&learned, &images)?;
-    let rows = run.compare(learned, &images)?;
+    let rows = run.compare(&learned, &images)?;
     let mut results = Results::of_rows(Machine::of(&run.gpu), command_line(), rows);
     results.measured.settings = run.settings(share, &outcome.model);
     results.measured.trained_on = trained_on(&scenes, [&outcome.model]);
@@ -199,8 +194,8 @@ impl Run<'_> {
         let summary = Summary::of(&dataset)?;
         let text = summary_text(&summary);
         let json = format!("{:#}\n", json!(summary));
-        write_file(&out.join(SUMMARY[0]), json)?;
-        write_file(&out.join(SUMMARY[1]), &text)?;
+        write_file(&out.join("dataset-summary.json"), json)?;
+        write_file(&out.join("dataset-summary.txt"), &text)?;
         if !summary.passes() {
             return Err(Failure::failed(format!(
                 "{}: rows of the dataset disagree with one another, see dataset-summary.txt",
@@ -245,19 +240,14 @@ impl Run<'_> {
         let scene = if self.args.scenes.is_empty() {
             suite::load(SHOWN_SCENE)?
         } else {
-            let held_out = self.scenes.iter().find(|s| s.held_out);
-            match held_out {
+            match self.scenes.iter().find(|s| s.held_out) {
                 Some(scene) => scene.clone(),
                 None => return Ok(Vec::new()),
             }
         };
-        let mut learned = vec![trained.clone()];
-        for recipe in SHOWN_NETWORKS {
-            learned.push(weight_of(&self.gpu, &Model::shipped(recipe)?)?);
-        }
         let methods: Vec<MethodSpec> = SHOWN.iter().map(|m| m.parse()).collect::<Result<_, _>>()?;
         let plan = Plan {
-            learned: &learned,
+            learned: std::slice::from_ref(trained),
             lenient: true,
             images: Some(images),
             ..Plan::new(self.frame, &methods)
@@ -266,12 +256,11 @@ impl Run<'_> {
     }
 
     /// Every method that there is, and the learned one, on every view of every scene.
-    fn compare(&mut self, learned: LearnedWeight, images: &Path) -> Result<Vec<Row>, Failure> {
+    fn compare(&mut self, learned: &LearnedWeight, images: &Path) -> Result<Vec<Row>, Failure> {
         let mut methods = MethodSpec::all();
         methods.push(learned.recipe.method.parse()?);
-        let learned = [learned];
         let plan = Plan {
-            learned: &learned,
+            learned: std::slice::from_ref(learned),
             lenient: true,
             frames: 0,
             images: Some(images),
@@ -296,17 +285,11 @@ impl Run<'_> {
             counted(views as u64, "view"),
             names.join(", ")
         ));
-        let bar = Bar::new(context.console, stage, 0);
         let partial = Partial::new(None, serde_json::Value::Null);
-        let bench = bench_watched(
-            &self.gpu,
-            scenes,
-            plan,
-            partial,
-            context.stop,
-            &mut bench::show(context, &bar),
-        )?;
-        drop(bar);
+        let bench = {
+            let show = &mut bench::show(context, stage);
+            bench_watched(&self.gpu, scenes, plan, partial, context.stop, show)?
+        };
         let frames = counted(bench.rows.len() as u64, "frame");
         let note = format!("{frames} at {}", self.size());
         self.done(stage, note)?;
@@ -318,11 +301,12 @@ impl Run<'_> {
         let names = |held_out: bool| {
             let scenes = self.scenes.iter().filter(|s| s.held_out == held_out);
             let names: Vec<&str> = scenes.map(|s| s.name.as_str()).collect();
-            if names.is_empty() {
-                "none".to_owned()
+            let names = if names.is_empty() {
+                vec!["none"]
             } else {
-                names.join(", ")
-            }
+                names
+            };
+            names.join(", ")
         };
         let sizes = if self.args.full { "full" } else { "quick" };
         let c = &self.config;

@@ -33,33 +33,31 @@ pub(super) fn run(context: &Context<'_>, args: &TrainArgs) -> Result<(), Failure
     place.deliver(&outcome.model)?;
     let meta = &outcome.model.meta;
     let dataset = meta.dataset.as_ref();
-    context.console.result(
-        || text(&args.out, &outcome),
-        || {
-            json!({
-                "out": json_path(&args.out),
-                "recipe": meta.recipe,
-                "topology": outcome.model.mlp.topology(),
-                "parameters": outcome.model.mlp.parameters(),
-                "config": meta.config,
-                "end": outcome.end.name(),
-                "epochs": outcome.history.len(),
-                "model_epoch": outcome.model_epoch,
-                "resumed_from": outcome.resumed_from,
-                "losses": meta.losses,
-                "held_out": meta.held_out,
-                "max_rows": (!args.stream).then_some(args.max_rows),
-                "buffer_rows": args.stream.then_some(args.buffer_rows),
-                "rows": dataset.map(|d| d.rows),
-                "dataset": dataset.map(|d| &d.hash),
-                "set_aside": dataset.map(|d| &d.set_aside),
-                "seed": meta.seed,
-                "seconds": seconds(&outcome),
-                "rows_per_s": rows_per_s(&outcome),
-                "checkpoint": json_path(&outcome.checkpoint),
-            })
-        },
-    )
+    let text = || text(&args.out, &outcome);
+    context.console.result(text, || {
+        json!({
+            "out": json_path(&args.out),
+            "recipe": meta.recipe,
+            "topology": outcome.model.mlp.topology(),
+            "parameters": outcome.model.mlp.parameters(),
+            "config": meta.config,
+            "end": outcome.end.name(),
+            "epochs": outcome.history.len(),
+            "model_epoch": outcome.model_epoch,
+            "resumed_from": outcome.resumed_from,
+            "losses": meta.losses,
+            "held_out": meta.held_out,
+            "max_rows": (!args.stream).then_some(args.max_rows),
+            "buffer_rows": args.stream.then_some(args.buffer_rows),
+            "rows": dataset.map(|d| d.rows),
+            "dataset": dataset.map(|d| &d.hash),
+            "set_aside": dataset.map(|d| &d.set_aside),
+            "seed": meta.seed,
+            "seconds": seconds(&outcome),
+            "rows_per_s": rows_per_s(&outcome),
+            "checkpoint": json_path(&outcome.checkpoint),
+        })
+    })
 }
 
 /// The recipe's settings with those of the flags.

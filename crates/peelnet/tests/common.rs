@@ -1,6 +1,4 @@
-//! What several tests of the program share.
-#![allow(dead_code, reason = "no test uses all of it")]
-#![allow(clippy::unwrap_used, reason = "a failing test may panic")]
+//! What the tests of the program share.
 
 use serde_json::Value;
 use std::collections::BTreeMap;
