@@ -13,7 +13,6 @@ use peelnet_gpu::wgpu;
 use peelnet_render::{FrameStats, Image, MethodOptions, Renderer, role};
 use std::{rc::Rc, sync::Arc};
 
-/// The method that others are judged by.
 pub(crate) const EXACT: &str = role::REFERENCE;
 
 /// What an error was measured of.
@@ -34,7 +33,6 @@ impl Key {
     }
 }
 
-/// Errors of a picture against the exact one.
 pub(crate) struct Numbers {
     pub differences: Differences,
     /// Mean ꟻLIP; none in a page, for which its code is not compiled.
@@ -48,7 +46,6 @@ pub(crate) struct Numbers {
 pub(crate) type Judge = Job<Key, Numbers>;
 
 impl Judge {
-    /// Begins to measure what is shown, unless that is known.
     pub fn want(&mut self, stage: &Stage, slot: &Slot, key: Key) {
         if self.wants(&key) {
             let last = self.last.as_ref().filter(|(of, _)| of.view == key.view);
@@ -92,7 +89,6 @@ async fn measured(
     })
 }
 
-/// Mean ꟻLIP.
 #[cfg(not(target_arch = "wasm32"))]
 fn flip(exact: &Image, image: &Image) -> Option<f64> {
     use peelnet_eval::perceptual::Displayed;
@@ -114,7 +110,6 @@ pub(crate) struct LayerMap {
 pub(crate) type LayerCounter = Job<View, LayerMap>;
 
 impl LayerCounter {
-    /// Begins to count, unless the map is of this view.
     pub fn want(&mut self, stage: &Stage, view: View) {
         if self.wants(&view) {
             self.begin(view, counted(Rc::clone(&stage.renderer), view));
