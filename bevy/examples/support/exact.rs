@@ -47,21 +47,16 @@ pub fn samples(count: u32) -> Vec<DVec2> {
     places.iter().map(|&place| place.into()).collect()
 }
 
-/// A card as rays see it.
-struct Plane {
-    local_from_world: DMat4,
-    color: [f64; 4],
-}
+/// A card as rays see it: `local_from_world`, and its colour and opacity.
+type Plane = (DMat4, DVec4);
 
 /// The image of cards at a size, with so many samples a pixel.
 pub fn picture(cards: &[Card], size: UVec2, sample_count: u32) -> Exact {
-    let planes: Vec<Plane> = cards
-        .iter()
-        .map(|card| Plane {
-            local_from_world: card.transform.to_matrix().as_dmat4().inverse(),
-            color: channels_of(card.color),
-        })
-        .collect();
+    let planes = cards.iter().map(|card| {
+        let local_from_world = card.transform.to_matrix().as_dmat4().inverse();
+        (local_from_world, card.color.to_vec4().as_dvec4())
+    });
+    let planes: Vec<Plane> = planes.collect();
     let places = samples(sample_count);
     let mut exact = Exact {
         pixels: Vec::new(),
@@ -103,9 +98,9 @@ fn hits_at(planes: &[Plane], point: DVec2, size: UVec2) -> Vec<(f64, usize)> {
     // Its length along the view's axis is 1, so that hits are distances along that axis.
     let direction = from_middle.extend(-1.0);
     let mut hits = Vec::new();
-    for (index, plane) in planes.iter().enumerate() {
-        let from: DVec4 = plane.local_from_world * EYE.as_dvec3().extend(1.0);
-        let along = plane.local_from_world * direction.extend(0.0);
+    for (index, (local_from_world, _)) in planes.iter().enumerate() {
+        let from = *local_from_world * EYE.as_dvec3().extend(1.0);
+        let along = *local_from_world * direction.extend(0.0);
         let distance = -from.z / along.z;
         let at = from + along * distance;
         if distance > 0.1 && at.x.abs() <= 0.5 && at.y.abs() <= 0.5 {
@@ -124,16 +119,11 @@ fn composited(planes: &[Plane], hits: &[(f64, usize)]) -> DVec3 {
     let mut color = DVec3::ZERO;
     let mut transmittance = 1.0;
     for &(_, index) in hits {
-        let [red, green, blue, alpha] = planes[index].color;
-        color += transmittance * alpha * DVec3::new(red, green, blue);
-        transmittance *= 1.0 - alpha;
+        let (_, layer) = planes[index];
+        color += transmittance * layer.w * layer.truncate();
+        transmittance *= 1.0 - layer.w;
     }
-    let [red, green, blue, _] = channels_of(BACKGROUND);
-    color + transmittance * DVec3::new(red, green, blue)
-}
-
-fn channels_of(color: LinearRgba) -> [f64; 4] {
-    [color.red, color.green, color.blue, color.alpha].map(f64::from)
+    color + transmittance * BACKGROUND.to_vec3().as_dvec3()
 }
 
 /// The sRGB curve.
@@ -170,7 +160,6 @@ impl Exact {
         }
     }
 
-    /// As a picture of four bytes a pixel.
     pub fn bytes(&self) -> Vec<u8> {
         let bytes = |pixel: &[f64; 3]| {
             let [red, green, blue] = pixel.map(|v| (v + 0.5) as u8);
