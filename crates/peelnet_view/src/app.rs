@@ -130,7 +130,11 @@ impl App {
             view: None,
             second: Slot::new(against.unwrap_or_else(|| start.method.clone())),
             first: Slot::new(start.method),
-            compare: Compare::new(start.compare),
+            compare: Compare {
+                mode: start.compare,
+                divider: 0.5,
+                scale: 16.0,
+            },
             judge: Judge::default(),
             counter: LayerCounter::default(),
             inspector: Inspector::default(),
@@ -252,8 +256,11 @@ impl App {
 
     /// What identifies the picture.
     pub fn key(&self) -> Option<Key> {
-        let stage = self.stage.as_ref()?;
-        Some(Key::of(stage.view(self.camera, self.size), &self.first))
+        Some(Key {
+            view: self.stage.as_ref()?.view(self.camera, self.size),
+            method: self.first.spec.to_string(),
+            network: self.first.own_network().map(|n| n.number),
+        })
     }
 
     fn poll(&mut self, ui: &Context) {
@@ -290,7 +297,7 @@ impl App {
         if self.page.is_drawing(ui) {
             return self.display.texture();
         }
-        let always = self.script.as_ref().is_some_and(Script::draws_always);
+        let always = self.script.as_ref().is_some_and(|script| !script.asked);
         let stage = self.stage.as_ref()?;
         let mode = self.compare.mode_at(ui);
         let half = [size[0].div_ceil(2), size[1]];
@@ -403,7 +410,7 @@ impl eframe::App for App {
     }
 
     fn save(&mut self, storage: &mut dyn eframe::Storage) {
-        memory::save(storage, &self.recent);
+        storage.set_string(memory::RECENT, memory::text(&self.recent));
     }
 
     #[cfg(target_arch = "wasm32")]

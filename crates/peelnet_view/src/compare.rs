@@ -63,14 +63,6 @@ pub(crate) struct Compare {
 }
 
 impl Compare {
-    pub const fn new(mode: Mode) -> Self {
-        Self {
-            mode,
-            divider: 0.5,
-            scale: 16.0,
-        }
-    }
-
     /// The mode at this moment: flickering takes turns.
     pub fn mode_at(&self, ui: &egui::Context) -> Mode {
         if self.mode != Mode::Flicker {

@@ -1,7 +1,7 @@
 //! Error against time of all methods on the present view.
 
 use crate::{
-    numbers::{EXACT, Key},
+    numbers::EXACT,
     slot::Shot,
     stage::{Stage, View},
     task::{Fallible, Job, computed, one_line},
@@ -38,16 +38,11 @@ pub(crate) struct Measured {
 #[derive(Default)]
 pub(crate) struct Front {
     pub job: Job<(), ()>,
-    view: Option<View>,
+    pub view: Option<View>,
     pub measured: Rc<RefCell<Measured>>,
 }
 
 impl Front {
-    /// Whether the points are of another view than this.
-    pub fn is_of_another(&self, key: &Key) -> bool {
-        self.view.is_some_and(|measured| measured != key.view)
-    }
-
     pub fn measure(&mut self, stage: &Stage, view: View) {
         let measured = Rc::default();
         let work = all(Rc::clone(&stage.renderer), view, Rc::clone(&measured));

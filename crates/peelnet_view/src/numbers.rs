@@ -19,18 +19,8 @@ pub(crate) const EXACT: &str = role::REFERENCE;
 #[derive(Clone, PartialEq)]
 pub(crate) struct Key {
     pub view: View,
-    method: String,
-    network: Option<u64>,
-}
-
-impl Key {
-    pub fn of(view: View, slot: &Slot) -> Self {
-        Self {
-            view,
-            method: slot.spec.to_string(),
-            network: slot.own_network().map(|n| n.number),
-        }
-    }
+    pub method: String,
+    pub network: Option<u64>,
 }
 
 pub(crate) struct Numbers {

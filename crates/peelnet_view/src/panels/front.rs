@@ -25,7 +25,7 @@ pub(super) fn show(app: &mut App, ui: &mut Ui) {
             app.front.measure(stage, key.view);
         }
     });
-    if app.front.is_of_another(&key) {
+    if app.front.view.is_some_and(|measured| measured != key.view) {
         ui.weak("Measured on an earlier view.");
     }
     if let Some(Err(e)) = app.front.job.of(&()) {

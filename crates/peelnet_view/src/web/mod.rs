@@ -214,12 +214,6 @@ fn say(text: &str) {
     }
 }
 
-/// Why there is nothing to draw with.
-fn no_device(error: &GpuError) -> String {
-    let why = one_line(error);
-    format!("This browser gave the page no graphics device ({why}). Reload the page to try again.")
-}
-
 /// One font for words and for numbers, and egui's own signs; what they lack the browser draws.
 fn fonts() -> FontDefinitions {
     let mut fonts = FontDefinitions::empty();
@@ -241,7 +235,10 @@ impl Page {
     /// Opens a device, and what the query of an address says; after another device, what was shown.
     async fn begin(&self, query: String, kept: Option<Kept>) -> Result<(), String> {
         let opened = Gpu::open_async(&AdapterRequest::Auto).await;
-        let gpu = opened.map_err(|e| no_device(&e))?;
+        let gpu = opened.map_err(|e| {
+            let why = one_line(&e);
+            format!("This browser gave the page no graphics device ({why}). Reload the page to try again.")
+        })?;
         let options = eframe::WebOptions {
             wgpu_options: configuration(&gpu),
             ..Default::default()
