@@ -33,8 +33,8 @@ pub struct Errors {
 }
 
 /// Where the samples of a pixel lie, as Vulkan and Direct3D have them.
-pub fn samples(count: u32) -> Vec<DVec2> {
-    let places: &[[f64; 2]] = match count {
+fn places_of(count: u32) -> &'static [[f64; 2]] {
+    match count {
         1 => &[[0.5, 0.5]],
         4 => &[
             [0.375, 0.125],
@@ -43,8 +43,7 @@ pub fn samples(count: u32) -> Vec<DVec2> {
             [0.625, 0.875],
         ],
         _ => panic!("{count} samples have no places here"),
-    };
-    places.iter().map(|&place| place.into()).collect()
+    }
 }
 
 /// A card as rays see it: `local_from_world`, and its colour and opacity.
@@ -57,7 +56,7 @@ pub fn picture(cards: &[Card], size: UVec2, sample_count: u32) -> Exact {
         (local_from_world, card.color.to_vec4().as_dvec4())
     });
     let planes: Vec<Plane> = planes.collect();
-    let places = samples(sample_count);
+    let places = places_of(sample_count);
     let mut exact = Exact {
         pixels: Vec::new(),
         certain: Vec::new(),
@@ -67,17 +66,13 @@ pub fn picture(cards: &[Card], size: UVec2, sample_count: u32) -> Exact {
             let corner = DVec2::new(x.into(), y.into());
             let mut sum = DVec3::ZERO;
             let mut certain = true;
-            for &place in &places {
-                let hits = hits_at(&planes, corner + place, size);
+            for &place in places {
+                let point = corner + DVec2::from(place);
+                let hits = hits_at(&planes, point, size);
                 sum += composited(&planes, &hits);
-                let margin = DVec2::splat(MARGIN);
-                for away in [
-                    margin,
-                    -margin,
-                    margin * DVec2::new(1.0, -1.0),
-                    margin * DVec2::new(-1.0, 1.0),
-                ] {
-                    certain &= same_order(&hits, &hits_at(&planes, corner + place + away, size));
+                for away in [[1.0, 1.0], [-1.0, -1.0], [1.0, -1.0], [-1.0, 1.0]] {
+                    let beside = point + MARGIN * DVec2::from(away);
+                    certain &= hits == hits_at(&planes, beside, size);
                 }
             }
             let mean = sum / places.len() as f64;
@@ -90,8 +85,8 @@ pub fn picture(cards: &[Card], size: UVec2, sample_count: u32) -> Exact {
     exact
 }
 
-/// Which cards the ray through a point of the image meets, and where, front to back.
-fn hits_at(planes: &[Plane], point: DVec2, size: UVec2) -> Vec<(f64, usize)> {
+/// Which cards the ray through a point of the image meets, front to back.
+fn hits_at(planes: &[Plane], point: DVec2, size: UVec2) -> Vec<usize> {
     let size = size.as_dvec2();
     let half = (FIELD_OF_VIEW * 0.5).tan();
     let from_middle = (point / size * 2.0 - 1.0) * DVec2::new(half * size.x / size.y, -half);
@@ -108,17 +103,13 @@ fn hits_at(planes: &[Plane], point: DVec2, size: UVec2) -> Vec<(f64, usize)> {
         }
     }
     hits.sort_by(|a, b| a.0.total_cmp(&b.0));
-    hits
+    hits.into_iter().map(|(_, index)| index).collect()
 }
 
-fn same_order(a: &[(f64, usize)], b: &[(f64, usize)]) -> bool {
-    a.iter().map(|hit| hit.1).eq(b.iter().map(|hit| hit.1))
-}
-
-fn composited(planes: &[Plane], hits: &[(f64, usize)]) -> DVec3 {
+fn composited(planes: &[Plane], hits: &[usize]) -> DVec3 {
     let mut color = DVec3::ZERO;
     let mut transmittance = 1.0;
-    for &(_, index) in hits {
+    for &index in hits {
         let (_, layer) = planes[index];
         color += transmittance * layer.w * layer.truncate();
         transmittance *= 1.0 - layer.w;
