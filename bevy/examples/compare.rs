@@ -12,7 +12,6 @@ use bevy_peelnet::{PeelnetModel, PeelnetPlugin};
 use std::{
     error::Error,
     fs,
-    io::BufWriter,
     path::{Path, PathBuf},
 };
 use support::{cards, exact, headless::Headless};
@@ -129,10 +128,11 @@ fn save(path: &Path, size: UVec2, pictures: &[&Vec<u8>]) -> Result<(), Box<dyn E
         }
     }
     let width = size.x * pictures.len() as u32;
-    let file = BufWriter::new(fs::File::create(path)?);
-    let mut encoder = png::Encoder::new(file, width, size.y);
-    encoder.set_color(png::ColorType::Rgba);
-    encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
-    encoder.write_header()?.write_image_data(&bytes)?;
-    Ok(())
+    Ok(image::save_buffer(
+        path,
+        &bytes,
+        width,
+        size.y,
+        image::ColorType::Rgba8,
+    )?)
 }

@@ -10,12 +10,8 @@ use bevy::{
     render::{Extract, sync_world::MainEntityHashMap},
 };
 
-/// The box of a mesh and where it stands.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct PlacedBox {
-    pub bounds: Aabb,
-    pub world_from_local: Affine3A,
-}
+/// The box of a mesh, and `world_from_local`.
+type PlacedBox = (Aabb, Affine3A);
 
 /// The boxes of all visible meshes.
 #[derive(Default, Resource)]
@@ -33,62 +29,45 @@ pub(crate) fn extract_boxes(
     }
     for (entity, bounds, transform, visibility) in &meshes {
         if visibility.get() {
-            let placed = PlacedBox {
-                bounds: *bounds,
-                world_from_local: transform.affine(),
-            };
+            let placed = (*bounds, transform.affine());
             boxes.0.insert(entity.into(), placed);
         }
     }
 }
 
-/// Near and far, and what both are counted from: what shaders get.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Depths {
-    pub near: f32,
-    pub far: f32,
-    pub origin: f32,
+/// Near, far, and what both are counted from, for a camera and the boxes in its view. A mesh without a box may be anywhere: then the range
+/// is the camera's.
+pub(crate) fn depths_of_boxes(
+    view_from_world: Affine3A,
+    clip_from_view: Mat4,
+    boxes: impl Iterator<Item = Option<PlacedBox>>,
+) -> Vec4 {
+    let (mut near, mut far) = (f32::INFINITY, f32::NEG_INFINITY);
+    for placed in boxes {
+        let [lowest, highest] = match placed {
+            Some((bounds, world_from_local)) => {
+                let view_from_local = view_from_world * world_from_local;
+                let center = -view_from_local.transform_point3a(bounds.center).z;
+                let reach = bounds.relative_radius(&Vec3A::Z, &view_from_local.matrix3);
+                [center - reach, center + reach]
+            }
+            None => ends_of(clip_from_view),
+        };
+        near = near.min(lowest);
+        far = far.max(highest);
+    }
+    clipped(near, far, clip_from_view)
 }
 
-impl Depths {
-    /// For a camera and the boxes in its view. A mesh without a box may be anywhere: then the range is the camera's.
-    pub fn of(
-        view_from_world: Affine3A,
-        clip_from_view: Mat4,
-        boxes: impl Iterator<Item = Option<PlacedBox>>,
-    ) -> Self {
-        let [camera_near, camera_far] = ends_of(clip_from_view);
-        let (mut near, mut far) = (f32::INFINITY, f32::NEG_INFINITY);
-        for placed in boxes {
-            let [lowest, highest] = match placed {
-                Some(placed) => extent_of(view_from_world * placed.world_from_local, placed.bounds),
-                None => [camera_near, camera_far],
-            };
-            near = near.min(lowest);
-            far = far.max(highest);
-        }
-        Self::clipped(near, far, clip_from_view)
-    }
-
-    /// A range that somebody set, or that boxes span, clipped to the camera's.
-    pub fn clipped(near: f32, far: f32, clip_from_view: Mat4) -> Self {
-        let [camera_near, camera_far] = ends_of(clip_from_view);
-        let near = near.clamp(camera_near, camera_far);
-        let far = far.clamp(near, camera_far);
-        // Distances along the axis of an orthographic camera are no distances to a point: the scale is linear, and counts from near.
-        let is_orthographic = clip_from_view.w_axis.w == 1.0;
-        let origin = if is_orthographic { near } else { 0.0 };
-        Self {
-            near: near - origin,
-            far: far - origin,
-            origin,
-        }
-    }
-
-    /// As `draw.wesl` reads it.
-    pub fn uniform(self) -> Vec4 {
-        Vec4::new(self.near, self.far, self.origin, 0.0)
-    }
+/// A range that somebody set, or that boxes span, clipped to the camera's; and what it is counted from.
+pub(crate) fn clipped(near: f32, far: f32, clip_from_view: Mat4) -> Vec4 {
+    let [camera_near, camera_far] = ends_of(clip_from_view);
+    let near = near.clamp(camera_near, camera_far);
+    let far = far.clamp(near, camera_far);
+    // Distances along the axis of an orthographic camera are no distances to a point: the scale is linear, and counts from near.
+    let is_orthographic = clip_from_view.w_axis.w == 1.0;
+    let origin = if is_orthographic { near } else { 0.0 };
+    Vec4::new(near - origin, far - origin, origin, 0.0)
 }
 
 /// The distances of the camera's near and far plane. Bevy's perspective cameras have no far plane: they get one far away.
@@ -107,15 +86,6 @@ fn ends_of(clip_from_view: Mat4) -> [f32; 2] {
     }
 }
 
-/// The nearest and the farthest distance of a box along the view's axis.
-fn extent_of(view_from_local: Affine3A, bounds: Aabb) -> [f32; 2] {
-    let center = -view_from_local.transform_point3a(bounds.center).z;
-    let axes = view_from_local.matrix3;
-    let along = Vec3A::new(axes.x_axis.z, axes.y_axis.z, axes.z_axis.z).abs();
-    let reach = along.dot(bounds.half_extents);
-    [center - reach, center + reach]
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -125,13 +95,11 @@ mod tests {
     /// The box of this half side around a point, turned about the y axis.
     fn placed(half: f32, angle: f32, z: f32) -> Option<PlacedBox> {
         let (turn, to) = (Quat::from_rotation_y(angle), Vec3::new(0.0, 0.0, z));
-        Some(PlacedBox {
-            bounds: Aabb {
-                center: Vec3A::ZERO,
-                half_extents: Vec3A::splat(half),
-            },
-            world_from_local: Affine3A::from_rotation_translation(turn, to),
-        })
+        let bounds = Aabb {
+            center: Vec3A::ZERO,
+            half_extents: Vec3A::splat(half),
+        };
+        Some((bounds, Affine3A::from_rotation_translation(turn, to)))
     }
 
     #[test]
@@ -159,10 +127,10 @@ mod tests {
             (perspective, vec![None], [0.1, 0.1 + 0.1 * 1e5, 0.0]),
         ];
         for (camera, boxes, want) in cases {
-            let depths = Depths::of(Affine3A::IDENTITY, camera, boxes.into_iter());
-            let found = [depths.near, depths.far, depths.origin];
+            let depths = depths_of_boxes(Affine3A::IDENTITY, camera, boxes.into_iter());
             let is_near = |(a, b): (f32, f32)| (a - b).abs() < 1e-4 * b.abs().max(1.0);
-            assert!(found.into_iter().zip(want).all(is_near), "{depths:?}");
+            let mut pairs = depths.to_array().into_iter().zip(want);
+            assert!(pairs.all(is_near), "{depths}");
         }
     }
 }

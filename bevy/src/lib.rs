@@ -71,6 +71,7 @@ pub use model::PeelnetModel;
 
 use bevy::{
     core_pipeline::{
+        FullscreenShader,
         core_3d::{main_opaque_pass_3d, main_transparent_pass_3d},
         schedule::{Core3d, Core3dSystems},
     },
@@ -80,8 +81,9 @@ use bevy::{
     render::{
         Extract, ExtractSchedule, GpuResourceAppExt, Render, RenderApp, RenderDebugFlags,
         RenderStartup, RenderSystems,
+        extract_component::{ExtractComponent, ExtractComponentPlugin},
         render_phase::{AddRenderCommand, DrawFunctions, SortedRenderPhasePlugin},
-        sync_world::RenderEntity,
+        render_resource::SpecializedRenderPipelines,
     },
     shader::{Shader, ShaderImport},
 };
@@ -110,7 +112,8 @@ pub enum DepthRange {
 /// Draws the transparent surfaces of a 3D camera in any order, with learned weights.
 ///
 /// Works with every [`Msaa`]: statistics and sums are kept by sample, and the passes shade by sample. Works with or without a depth prepass.
-#[derive(Clone, Component, Copy, Debug, Default, PartialEq, Reflect)]
+#[derive(Clone, Component, Copy, Debug, Default, ExtractComponent, PartialEq, Reflect)]
+#[extract_app(RenderApp)]
 #[reflect(Component, Default)]
 pub struct LearnedTransparency {
     /// Where the range of depths comes from.
@@ -119,7 +122,7 @@ pub struct LearnedTransparency {
 
 /// Adds [`LearnedTransparency`]. Must come after `DefaultPlugins`.
 pub struct PeelnetPlugin {
-    model: Result<PeelnetModel, String>,
+    model: Result<PeelnetModel, PeelnetError>,
 }
 
 impl Default for PeelnetPlugin {
@@ -138,9 +141,7 @@ impl From<PeelnetModel> for PeelnetPlugin {
 impl From<Result<PeelnetModel, PeelnetError>> for PeelnetPlugin {
     /// With a network that may be refused. Then the plugin reports why, and Bevy draws the scene.
     fn from(model: Result<PeelnetModel, PeelnetError>) -> Self {
-        Self {
-            model: model.map_err(|error| error.to_string()),
-        }
+        Self { model }
     }
 }
 
@@ -156,11 +157,12 @@ impl Plugin for PeelnetPlugin {
             messages.report(Gravity::Warning, text.into());
             return;
         }
-        app.add_plugins(
+        app.add_plugins((
+            ExtractComponentPlugin::<LearnedTransparency>::default(),
             SortedRenderPhasePlugin::<phase::Learned3d, MeshPipeline>::new(
                 RenderDebugFlags::default(),
             ),
-        );
+        ));
         let setup = match &self.model {
             Ok(model) => Some(setup_of(app, model)),
             Err(error) => {
@@ -182,17 +184,14 @@ impl Plugin for PeelnetPlugin {
             .init_resource::<HookedShaders>()
             .init_gpu_resource::<device::Refusals>()
             .init_gpu_resource::<LearnedPipelines>()
+            .init_gpu_resource::<SpecializedRenderPipelines<Setup>>()
             .init_gpu_resource::<view::LearnedViews>()
             .init_resource::<DrawFunctions<phase::Learned3d>>()
             .add_render_command::<phase::Learned3d, pass::DrawLearned>()
             .add_systems(RenderStartup, report_new_device)
             .add_systems(
                 ExtractSchedule,
-                (
-                    extract_cameras,
-                    extract_hooked_shaders,
-                    depths::extract_boxes,
-                ),
+                (extract_hooked_shaders, depths::extract_boxes),
             )
             .add_systems(
                 Render,
@@ -217,28 +216,20 @@ impl Plugin for PeelnetPlugin {
 
 /// Adds the shaders of a network. Their paths are what other shaders import them by.
 fn setup_of(app: &mut App, model: &PeelnetModel) -> Setup {
+    let render = app.sub_app(RenderApp).world();
+    let fullscreen = render.resource::<FullscreenShader>().clone();
     let bevy_standard = app.world().resource::<AssetServer>().load(BEVY_STANDARD);
     let mut shaders = app.world_mut().resource_mut::<Assets<Shader>>();
-    let standard = include_str!("standard.wesl");
-    let resolve = [false, true].map(|multisampled| {
-        let text = shader_text::resolve_text(model, multisampled);
-        let name = if multisampled { "samples" } else { "pixels" };
-        shaders.add(Shader::from_wgsl(
-            text,
-            format!("bevy_peelnet/resolve_{name}.wgsl"),
-        ))
-    });
+    let mut add = |name: &str, text: String| {
+        let path = format!("embedded://bevy_peelnet/{name}.wesl");
+        shaders.add(Shader::from_wesl(text, path))
+    };
     Setup {
         bevy_standard,
-        standard: shaders.add(Shader::from_wesl(
-            standard,
-            "embedded://bevy_peelnet/standard.wesl",
-        )),
-        draw: shaders.add(Shader::from_wesl(
-            shader_text::draw_text(model),
-            "embedded://bevy_peelnet/draw.wesl",
-        )),
-        resolve,
+        standard: add("standard", include_str!("standard.wesl").to_owned()),
+        draw: add("draw", shader_text::draw_text(model)),
+        resolve: add("resolve", shader_text::resolve_text(model)),
+        fullscreen,
         model: model.clone(),
     }
 }
@@ -250,21 +241,6 @@ fn report_new_device(messages: Res<PeelnetMessages>, mut had_one: Local<bool>) {
         messages.report(Gravity::Info, text.into());
     }
     *had_one = true;
-}
-
-fn extract_cameras(
-    cameras: Extract<Query<(RenderEntity, Option<&LearnedTransparency>), With<Camera3d>>>,
-    mut commands: Commands,
-) {
-    for (entity, settings) in &cameras {
-        let Ok(mut camera) = commands.get_entity(entity) else {
-            continue;
-        };
-        match settings {
-            Some(settings) => camera.insert(*settings),
-            None => camera.remove::<LearnedTransparency>(),
-        };
-    }
 }
 
 fn extract_hooked_shaders(

@@ -3,7 +3,7 @@
 use crate::error::PeelnetError;
 use bevy::render::render_resource::TextureFormat;
 use serde::Deserialize;
-use std::{borrow::Cow, fs, ops::Range, path::Path};
+use std::{borrow::Cow, fs, path::Path};
 
 /// The value of `format` in every description.
 const FORMAT: &str = "peelnet-export";
@@ -32,25 +32,24 @@ pub(crate) struct Target {
     pub write: String,
 }
 
-impl Target {
-    fn bytes(&self) -> u32 {
-        self.format.block_copy_size(None).unwrap_or_default()
-    }
-}
-
 /// One drawing of all transparent surfaces.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Deserialize, PartialEq)]
 pub(crate) struct Pass {
     pub name: String,
-    /// Targets of earlier passes, as indices into [`PeelnetModel::targets`].
-    pub reads: Vec<usize>,
+    /// Names of targets of earlier passes.
+    pub reads: Vec<String>,
     /// The statement before the writes.
-    pub compute: String,
-    /// Of [`PeelnetModel::targets`].
-    pub targets: Range<usize>,
-    /// Whether a fragment's opacity is needed, and whether its lit colour is.
-    pub needs_alpha: bool,
-    pub needs_color: bool,
+    pub compute: Option<String>,
+    pub targets: Vec<Target>,
+}
+
+impl Pass {
+    /// Whether the statements use a variable of a fragment, such as its opacity (`alpha`) or its lit colour (`rgb`).
+    pub fn needs(&self, variable: &str) -> bool {
+        let writes = self.targets.iter().map(|target| &target.write);
+        let mut texts = writes.chain(&self.compute);
+        texts.any(|text| mentions(text, variable))
+    }
 }
 
 /// An exported network: `model.wgsl` and `model.json` of one folder of `models/`.
@@ -59,12 +58,8 @@ pub(crate) struct Pass {
 /// whose passes add or take maxima is accepted, as are networks of your own that `peelnet export` wrote.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PeelnetModel {
-    pub(crate) recipe: String,
     pub(crate) wgsl: Cow<'static, str>,
-    pub(crate) targets: Vec<Target>,
-    pub(crate) passes: Vec<Pass>,
-    pub(crate) resolve: String,
-    pub(crate) resolve_reads: Vec<usize>,
+    pub(crate) description: Description,
 }
 
 #[derive(Deserialize)]
@@ -74,21 +69,14 @@ struct Header {
     tool_version: String,
 }
 
-#[derive(Deserialize)]
-struct Description {
+/// What this crate reads of `model.json`.
+#[derive(Clone, Debug, Deserialize, PartialEq)]
+pub(crate) struct Description {
     recipe: String,
-    passes: Vec<DescribedPass>,
-    resolve: String,
-    resolve_reads: Vec<String>,
+    pub passes: Vec<Pass>,
+    pub resolve: String,
+    pub resolve_reads: Vec<String>,
     multisampling: String,
-}
-
-#[derive(Deserialize)]
-struct DescribedPass {
-    name: String,
-    reads: Vec<String>,
-    compute: Option<String>,
-    targets: Vec<Target>,
 }
 
 impl PeelnetModel {
@@ -148,17 +136,49 @@ impl PeelnetModel {
                  export the network again"
             )));
         }
-        let described: Description = serde_json::from_str(json).map_err(unreadable)?;
-        let recipe = described.recipe.clone();
-        Self::of(described, wgsl.into()).map_err(|reason| {
-            PeelnetError(format!(
-                "this plugin cannot draw with a network of recipe {recipe:?}: {reason}; take small, medium, large or an anchored one"
-            ))
-        })
+        let description: Description = serde_json::from_str(json).map_err(unreadable)?;
+        let wgsl = wgsl.into();
+        match description.check(&wgsl) {
+            Ok(()) => Ok(Self { wgsl, description }),
+            Err(reason) => Err(PeelnetError(format!(
+                "this plugin cannot draw with a network of recipe {:?}: {reason}; take small, medium, large or an anchored one",
+                description.recipe
+            ))),
+        }
     }
 
-    fn of(described: Description, wgsl: Cow<'static, str>) -> Result<Self, String> {
-        if !wgsl.contains(&format!("Recipe {},", described.recipe)) {
+    /// The recipe that made the network, such as `medium`.
+    #[must_use]
+    pub fn recipe(&self) -> &str {
+        &self.description.recipe
+    }
+
+    /// Bytes that the targets take a sample, beside Bevy's own.
+    #[must_use]
+    pub fn bytes_per_sample(&self) -> u32 {
+        bytes(self.targets())
+    }
+
+    pub(crate) fn targets(&self) -> impl Iterator<Item = &Target> {
+        self.description.passes.iter().flat_map(|p| &p.targets)
+    }
+
+    /// The binding of a target in the bind groups of passes, and in that of the resolve. 0 is the range of depths.
+    pub(crate) fn binding(&self, target: &str) -> u32 {
+        1 + self.targets().take_while(|t| t.name != target).count() as u32
+    }
+}
+
+/// Bytes of targets, a sample.
+pub(crate) fn bytes<'a>(targets: impl IntoIterator<Item = &'a Target>) -> u32 {
+    let bytes = |target: &Target| target.format.block_copy_size(None).unwrap_or_default();
+    targets.into_iter().map(bytes).sum()
+}
+
+impl Description {
+    /// What this plugin cannot draw of a network with this text.
+    fn check(&self, wgsl: &str) -> Result<(), String> {
+        if !wgsl.contains(&format!("Recipe {},", self.recipe)) {
             return Err("the text is not of the network that the description is of".into());
         }
         for function in ["peelnet_zeta", "peelnet_fragment", "peelnet_resolve"] {
@@ -166,87 +186,43 @@ impl PeelnetModel {
                 return Err(format!("its text has no function {function}"));
             }
         }
-        if described.multisampling != "by-sample" {
-            let found = described.multisampling;
+        if self.multisampling != "by-sample" {
+            let found = &self.multisampling;
             return Err(format!(
                 "multisampling {found:?} is not known, only \"by-sample\""
             ));
         }
-        let mut targets: Vec<Target> = Vec::new();
-        let mut passes = Vec::new();
-        for pass in described.passes {
-            let name = pass.name;
-            let reads = found_in(&targets, &pass.reads).map_err(|target| {
-                format!("pass {name:?} reads {target:?}, which no pass before it draws")
-            })?;
-            let transmits = |t: &&Target| [t.color, t.alpha].contains(&Blend::Transmit);
-            if let Some(Target { name, .. }) = pass.targets.iter().find(transmits) {
+        let mut drawn: Vec<&String> = Vec::new();
+        for pass in &self.passes {
+            let name = &pass.name;
+            if let Some(target) = pass.reads.iter().find(|target| !drawn.contains(target)) {
                 return Err(format!(
-                    "target {name:?} blends with \"transmit\", this plugin with \"add\" and \"max\""
+                    "pass {name:?} reads {target:?}, which no pass before it draws"
                 ));
             }
-            let first = targets.len();
-            targets.extend(pass.targets);
-            let compute = pass.compute.unwrap_or_default();
-            let texts = || {
-                let writes = targets[first..].iter().map(|t| t.write.as_str());
-                writes.chain([compute.as_str()])
-            };
-            if texts().any(|text| mentions(text, "z")) {
+            for target in &pass.targets {
+                if [target.color, target.alpha].contains(&Blend::Transmit) {
+                    let name = &target.name;
+                    return Err(format!(
+                        "target {name:?} blends with \"transmit\", this plugin with \"add\" and \"max\""
+                    ));
+                }
+                drawn.push(&target.name);
+            }
+            if pass.needs("z") {
                 return Err(format!(
                     "pass {name:?} wants plain distances, which networks of this plugin do not use"
                 ));
             }
-            let needs_alpha = texts().any(|text| mentions(text, "alpha"));
-            let needs_color = texts().any(|text| mentions(text, "rgb"));
-            passes.push(Pass {
-                name,
-                reads,
-                compute,
-                targets: first..targets.len(),
-                needs_alpha,
-                needs_color,
-            });
         }
-        if passes.is_empty() {
+        if self.passes.is_empty() {
             return Err("its description has no passes".into());
         }
-        let resolve_reads = found_in(&targets, &described.resolve_reads)
-            .map_err(|target| format!("its resolve reads {target:?}, which no pass draws"))?;
-        Ok(Self {
-            recipe: described.recipe,
-            wgsl,
-            targets,
-            passes,
-            resolve: described.resolve,
-            resolve_reads,
-        })
+        match self.resolve_reads.iter().find(|t| !drawn.contains(t)) {
+            Some(target) => Err(format!("its resolve reads {target:?}, which no pass draws")),
+            None => Ok(()),
+        }
     }
-
-    /// The recipe that made the network, such as `medium`.
-    #[must_use]
-    pub fn recipe(&self) -> &str {
-        &self.recipe
-    }
-
-    /// Bytes that the targets take a sample, beside Bevy's own.
-    #[must_use]
-    pub fn bytes_per_sample(&self) -> u32 {
-        Self::bytes_of(&self.targets)
-    }
-
-    pub(crate) fn bytes_of(targets: &[Target]) -> u32 {
-        targets.iter().map(Target::bytes).sum()
-    }
-}
-
-/// The indices of named targets, or the first name that is none.
-fn found_in(targets: &[Target], names: &[String]) -> Result<Vec<usize>, String> {
-    let find = |name: &String| {
-        let index = targets.iter().position(|t| t.name == *name);
-        index.ok_or_else(|| name.clone())
-    };
-    names.iter().map(find).collect()
 }
 
 /// Whether an expression uses a variable of this name; not as a member (`s.rgb`), and not as part of another name.
@@ -283,25 +259,19 @@ mod tests {
         ] {
             assert_eq!(model.bytes_per_sample(), bytes, "{}", model.recipe());
             // Nothing is lit before the last pass, and the first needs depth alone.
-            let needs = |p: &Pass| (p.needs_alpha, p.needs_color);
-            let needs: Vec<_> = model.passes.iter().map(needs).collect();
+            let needs = |p: &Pass| (p.needs("alpha"), p.needs("rgb"));
+            let needs: Vec<_> = model.description.passes.iter().map(needs).collect();
             assert_eq!(needs, [(false, false), (true, false), (true, true)]);
         }
     }
 
     #[test]
     fn what_cannot_be_drawn_is_refused_with_the_reason() {
-        let later = refusal_of("medium", "medium", |json| {
-            json["format_version"] = 2.into();
-            // What else a later version changes does not matter.
-            json["passes"] = "elsewhere".into();
-        });
-        assert!(later.contains("peelnet-export 2"), "{later}");
-        assert!(later.contains("peelnet-export 1"), "{later}");
-        let thesis = refusal_of("thesis", "thesis", |_| ());
-        assert!(thesis.contains("\"thesis\""), "{thesis}");
         for (text, refusal) in [
-            ("no function peelnet_zeta", thesis),
+            (
+                "no function peelnet_zeta",
+                refusal_of("thesis", "thesis", |_| ()),
+            ),
             (
                 "wants plain distances",
                 refusal_of("medium", "medium", |json| {

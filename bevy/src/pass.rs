@@ -1,11 +1,10 @@
 //! The passes of a frame: those of the description over all weighed surfaces, and the resolve into the view.
 
 use crate::{
-    model::Target,
     phase::Learned3d,
     pipelines::{LearnedPipelines, Setup},
     shader_text::GROUP,
-    view::{LearnedView, LearnedViews},
+    view::LearnedViews,
 };
 use bevy::{
     camera::{MainPassResolutionOverride, Viewport},
@@ -24,10 +23,9 @@ use bevy::{
         },
         render_resource::{
             LoadOp, Operations, PipelineCache, RenderPassColorAttachment, RenderPassDescriptor,
-            StoreOp,
+            RenderPipeline, StoreOp,
         },
         renderer::{RenderContext, ViewQuery},
-        texture::CachedTexture,
         view::{ExtractedView, ViewDepthStencilTexture, ViewTarget},
     },
 };
@@ -64,32 +62,43 @@ pub(crate) fn learned_transparent_pass(
     let (Some(setup), Some(state), Some(phase)) = (setup, views.0.get(&id), phases.get(&id)) else {
         return;
     };
-    let (Some(resolve_group), Some(resolve)) = (
-        &state.resolve_group,
-        cache.get_render_pipeline(state.resolve),
-    ) else {
+    let resolve = state.resolve.and_then(|id| cache.get_render_pipeline(id));
+    let (Some(targets), Some(resolve)) = (&state.targets, resolve) else {
         return;
     };
     let viewport = Viewport::from_viewport_and_override(camera.viewport.as_ref(), resolution);
     let diagnostics = context.diagnostic_recorder();
     let diagnostics = diagnostics.as_deref();
 
-    for (number, pass) in setup.model.passes.iter().enumerate() {
-        let attachments = attachments_of(state, &setup.model.targets, pass.targets.clone());
+    let passes = &setup.model.description.passes;
+    for (number, (pass, group)) in passes.iter().zip(&targets.groups).enumerate() {
+        let attachments = pass.targets.iter().map(|target| {
+            // Clear values are small integers, or the least half float.
+            let [red, green, blue, alpha] = target.clear.map(|value| value as f32);
+            Some(RenderPassColorAttachment {
+                view: &targets.textures[&target.name].default_view,
+                depth_slice: None,
+                // Samples of coded levels must not be averaged.
+                resolve_target: None,
+                ops: Operations {
+                    load: LoadOp::Clear(LinearRgba::new(red, green, blue, alpha).into()),
+                    store: StoreOp::Store,
+                },
+            })
+        });
+        let attachments: Vec<_> = attachments.collect();
         let mut drawing = context.begin_tracked_render_pass(RenderPassDescriptor {
             label: Some("peelnet_pass"),
             color_attachments: &attachments,
             // Nothing writes depth here. It is stored because it would be lost otherwise.
             depth_stencil_attachment: Some(depth.get_attachment(StoreOp::Store)),
-            timestamp_writes: None,
-            occlusion_query_set: None,
-            multiview_mask: None,
+            ..default()
         });
         let span = diagnostics.pass_span(&mut drawing, format!("peelnet_{}", pass.name));
         if let Some(viewport) = &viewport {
             drawing.set_camera_viewport(viewport);
         }
-        drawing.set_bind_group(GROUP, &state.groups[number], &[]);
+        drawing.set_bind_group(GROUP, group, &[]);
         if let Err(problem) = draw(phase, world, &mut drawing, entity, &|item| {
             cache.get_render_pipeline(pipelines.get(item.cached_pipeline(), number)?)
         }) {
@@ -101,46 +110,16 @@ pub(crate) fn learned_transparent_pass(
     let mut drawing = context.begin_tracked_render_pass(RenderPassDescriptor {
         label: Some("peelnet_resolve"),
         color_attachments: &[Some(target.get_color_attachment())],
-        depth_stencil_attachment: None,
-        timestamp_writes: None,
-        occlusion_query_set: None,
-        multiview_mask: None,
+        ..default()
     });
     let span = diagnostics.pass_span(&mut drawing, "peelnet_resolve");
     if let Some(viewport) = &viewport {
         drawing.set_camera_viewport(viewport);
     }
     drawing.set_render_pipeline(resolve);
-    drawing.set_bind_group(0, resolve_group, &[]);
+    drawing.set_bind_group(0, &targets.resolve_group, &[]);
     drawing.draw(0..3, 0..1);
     span.end(&mut drawing);
-}
-
-fn attachments_of<'a>(
-    state: &'a LearnedView,
-    targets: &[Target],
-    written: std::ops::Range<usize>,
-) -> Vec<Option<RenderPassColorAttachment<'a>>> {
-    let attachment = |(texture, target): (&'a CachedTexture, &Target)| {
-        // Clear values are small integers, or the least half float.
-        let [red, green, blue, alpha] = target.clear.map(|value| value as f32);
-        Some(RenderPassColorAttachment {
-            view: &texture.default_view,
-            depth_slice: None,
-            // Samples of coded levels must not be averaged.
-            resolve_target: None,
-            ops: Operations {
-                load: LoadOp::Clear(LinearRgba::new(red, green, blue, alpha).into()),
-                store: StoreOp::Store,
-            },
-        })
-    };
-    let textures = &state.textures[written.clone()];
-    textures
-        .iter()
-        .zip(&targets[written])
-        .map(attachment)
-        .collect()
 }
 
 /// Draws all batches with the pipelines of one pass.
@@ -149,7 +128,7 @@ fn draw<'w>(
     world: &'w World,
     drawing: &mut TrackedRenderPass<'w>,
     view: Entity,
-    pipeline_of: &dyn Fn(&Learned3d) -> Option<&'w bevy::render::render_resource::RenderPipeline>,
+    pipeline_of: &dyn Fn(&Learned3d) -> Option<&'w RenderPipeline>,
 ) -> Result<(), DrawError> {
     let functions = world.resource::<DrawFunctions<Learned3d>>();
     let mut functions = functions.write();

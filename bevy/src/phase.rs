@@ -6,16 +6,14 @@
 
 use crate::{
     DepthRange, LearnedTransparency,
-    depths::{Boxes, Depths},
+    depths::{Boxes, clipped, depths_of_boxes},
     device::Refusals,
     error::{Gravity, PeelnetMessages},
     pipelines::{Found, HookedShaders, LearnedPipelines, Setup},
-    view::{LearnedView, LearnedViews},
+    view::LearnedViews,
 };
 use bevy::{
-    core_pipeline::{
-        FullscreenShader, core_3d::Transparent3d, oit::OrderIndependentTransparencySettings,
-    },
+    core_pipeline::{core_3d::Transparent3d, oit::OrderIndependentTransparencySettings},
     ecs::{entity::EntityHash, system::SystemParam},
     material::labels::DrawFunctionId,
     pbr::{DrawMaterial, PreparedMaterial, RenderMaterialInstances},
@@ -28,7 +26,7 @@ use bevy::{
             CachedRenderPipelinePhaseItem, DrawFunctions, PhaseItem, PhaseItemExtraIndex,
             SortedPhaseItem, SortedRenderPhase, ViewSortedRenderPhases,
         },
-        render_resource::{CachedRenderPipelineId, PipelineCache},
+        render_resource::{CachedRenderPipelineId, PipelineCache, SpecializedRenderPipelines},
         renderer::{RenderAdapter, RenderDevice},
         sync_world::MainEntity,
         view::{ExtractedView, RetainedViewEntity},
@@ -131,9 +129,9 @@ pub(crate) fn lend_items(
     materials: Materials<'_>,
     boxes: Res<Boxes>,
     cache: Res<PipelineCache>,
-    fullscreen: Res<FullscreenShader>,
     (device, adapter): (Res<RenderDevice>, Res<RenderAdapter>),
     mut pipelines: ResMut<LearnedPipelines>,
+    mut resolves: ResMut<SpecializedRenderPipelines<Setup>>,
     mut transparent: ResMut<ViewSortedRenderPhases<Transparent3d>>,
     mut learned: ResMut<ViewSortedRenderPhases<Learned3d>>,
     mut views: ResMut<LearnedViews>,
@@ -173,14 +171,14 @@ pub(crate) fn lend_items(
         };
         live.insert(id);
         let into = learned.entry(id).or_default();
-        let resolve = pipelines.resolve(view.target_format, samples, &cache, &setup, &fullscreen);
-        let state = views.0.entry(id);
-        let state = state.or_insert_with(|| LearnedView::new(resolve, samples));
-        (state.resolve, state.samples) = (resolve, samples);
+        let key = (view.target_format, samples);
+        let resolve = resolves.specialize(&cache, &setup, key);
+        let state = views.0.entry(id).or_default();
+        state.resolve = Some(resolve);
         if cache.get_render_pipeline(resolve).is_none() {
             continue;
         }
-        let weighed = lend(from, into, |item| {
+        let lent = from.items.extract_if(.., |_, item| {
             if !materials.applies(item) {
                 return false;
             }
@@ -198,10 +196,12 @@ pub(crate) fn lend_items(
                 }
             }
         });
+        let lent = lent.map(|(key, item)| (key, Learned3d(item)));
+        into.items.extend(lent);
         // Sorted by pipeline, not by depth.
         into.sort();
         state.frames_without += 1;
-        if weighed > 0 {
+        if !into.items.is_empty() {
             state.frames_without = 0;
         }
         if state.frames_without == FRAMES_TO_LOAD {
@@ -215,23 +215,6 @@ pub(crate) fn lend_items(
     }
     learned.retain(|id, _| live.contains(id));
     views.0.retain(|id, _| live.contains(id));
-}
-
-/// Moves the chosen items, and says how many.
-fn lend(
-    from: &mut SortedRenderPhase<Transparent3d>,
-    into: &mut SortedRenderPhase<Learned3d>,
-    mut choose: impl FnMut(&Transparent3d) -> bool,
-) -> usize {
-    let chosen = from.items.iter().filter(|(_, item)| choose(item));
-    let keys: Vec<_> = chosen.map(|(key, _)| *key).collect();
-    for key in &keys {
-        // Bevy sorts what stays after this system, so that its order does not matter here.
-        if let Some(item) = from.items.swap_remove(key) {
-            into.items.insert(*key, Learned3d(item));
-        }
-    }
-    keys.len()
 }
 
 /// Gives all items back, as they were queued.
@@ -257,9 +240,9 @@ fn depths_of(
     phase: &SortedRenderPhase<Learned3d>,
     boxes: &Boxes,
     messages: &PeelnetMessages,
-) -> Depths {
+) -> Vec4 {
     if let DepthRange::Fixed { near, far } = settings.depth_range {
-        return Depths::clipped(near, far, view.clip_from_view);
+        return clipped(near, far, view.clip_from_view);
     }
     let placed = phase.items.values().map(|item| {
         let placed = boxes.0.get(&item.main_entity()).copied();
@@ -274,5 +257,5 @@ fn depths_of(
         placed
     });
     let view_from_world = view.world_from_view.affine().inverse();
-    Depths::of(view_from_world, view.clip_from_view, placed)
+    depths_of_boxes(view_from_world, view.clip_from_view, placed)
 }

@@ -5,8 +5,8 @@
 //! specialises (skins, morph targets, bindless materials, fog) holds here too.
 
 use crate::{
-    model::{Blend, PeelnetModel, Target},
-    shader_text::{GROUP, binding, pass_define},
+    model::{Blend, Pass, PeelnetModel, Target},
+    shader_text::{GROUP, pass_define},
 };
 use bevy::{
     asset::AssetId,
@@ -14,10 +14,10 @@ use bevy::{
     platform::collections::{HashMap, HashSet},
     prelude::*,
     render::render_resource::{
-        BindGroupLayoutDescriptor, BindGroupLayoutEntryBuilder, BlendComponent, BlendFactor,
-        BlendOperation, BlendState, CachedRenderPipelineId, ColorTargetState, ColorWrites,
-        FragmentState, MultisampleState, PipelineCache, PipelineDescriptor,
-        RenderPipelineDescriptor, ShaderStages, TextureFormat, TextureSampleType,
+        BindGroupLayoutDescriptor, BlendComponent, BlendFactor, BlendOperation, BlendState,
+        CachedRenderPipelineId, ColorTargetState, ColorWrites, FragmentState, MultisampleState,
+        PipelineCache, PipelineDescriptor, RenderPipelineDescriptor, ShaderStages,
+        SpecializedRenderPipeline, TextureFormat, TextureSampleType,
         binding_types::{texture_2d, texture_2d_multisampled, uniform_buffer},
     },
     shader::{Shader, ShaderDefVal},
@@ -33,8 +33,8 @@ pub(crate) struct Setup {
     /// Kept alive: materials import it by its path.
     #[expect(dead_code, reason = "held, not read")]
     pub draw: Handle<Shader>,
-    /// For one sample a pixel, and for several.
-    pub resolve: [Handle<Shader>; 2],
+    pub resolve: Handle<Shader>,
+    pub fullscreen: FullscreenShader,
 }
 
 /// Fragment shaders of materials that import `bevy_peelnet::draw`.
@@ -52,10 +52,9 @@ pub(crate) enum Found {
 
 /// Pipelines by the pipeline of Bevy's that they are made from.
 #[derive(Default, Resource)]
-pub(crate) struct LearnedPipelines {
-    by_base: HashMap<CachedRenderPipelineId, Option<Vec<CachedRenderPipelineId>>>,
-    resolve: HashMap<(TextureFormat, u32), CachedRenderPipelineId>,
-}
+pub(crate) struct LearnedPipelines(
+    HashMap<CachedRenderPipelineId, Option<Vec<CachedRenderPipelineId>>>,
+);
 
 impl LearnedPipelines {
     /// Asks for the pipelines of all passes, and says whether they can be drawn with.
@@ -66,7 +65,7 @@ impl LearnedPipelines {
         setup: &Setup,
         hooked: &HookedShaders,
     ) -> Found {
-        if !self.by_base.contains_key(&base) {
+        if !self.0.contains_key(&base) {
             // Pipelines that were asked for in this frame are not in the list yet.
             let Some(cached) = cache.pipelines().nth(base.id()) else {
                 return Found::Waiting;
@@ -77,38 +76,23 @@ impl LearnedPipelines {
             };
             let pipelines = learned_descriptors(descriptor, setup, hooked)
                 .map(|all| all.into_iter().map(|d| cache.queue_render_pipeline(d)));
-            self.by_base.insert(base, pipelines.map(Iterator::collect));
+            self.0.insert(base, pipelines.map(Iterator::collect));
         }
         let is_ready = |&id: &CachedRenderPipelineId| cache.get_render_pipeline(id).is_some();
-        match self.by_base.get(&base) {
+        match self.0.get(&base) {
             Some(Some(ids)) if ids.iter().all(is_ready) => Found::Ready,
             Some(None) => Found::NoHook,
             _ => Found::Waiting,
         }
     }
 
-    /// The pipeline of a pass.
     pub fn get(&self, base: CachedRenderPipelineId, pass: usize) -> Option<CachedRenderPipelineId> {
-        self.by_base.get(&base)?.as_ref()?.get(pass).copied()
-    }
-
-    /// The pipeline that composites into the view's texture.
-    pub fn resolve(
-        &mut self,
-        format: TextureFormat,
-        samples: u32,
-        cache: &PipelineCache,
-        setup: &Setup,
-        fullscreen: &FullscreenShader,
-    ) -> CachedRenderPipelineId {
-        *self.resolve.entry((format, samples)).or_insert_with(|| {
-            cache.queue_render_pipeline(resolve_descriptor(format, samples, setup, fullscreen))
-        })
+        self.0.get(&base)?.as_ref()?.get(pass).copied()
     }
 
     /// A shader came or changed: those that had no hook may have one now.
     pub fn ask_again(&mut self) {
-        self.by_base.retain(|_, pipelines| pipelines.is_some());
+        self.0.retain(|_, pipelines| pipelines.is_some());
     }
 }
 
@@ -129,14 +113,12 @@ fn learned_descriptors(
     if base.layout.len() != GROUP {
         return None;
     }
-    let model = &setup.model;
-    let descriptor = |(number, pass): (usize, &crate::model::Pass)| {
+    let descriptor = |(number, pass): (usize, &Pass)| {
         let mut descriptor = base.clone();
         descriptor.label = Some(format!("peelnet_{}_pipeline", pass.name).into());
         let samples = descriptor.multisample.count;
-        descriptor
-            .layout
-            .push(layout_of(&pass.reads, samples, true));
+        let layout = layout_of(&setup.model, &pass.reads, samples);
+        descriptor.layout.push(layout);
         descriptor.multisample = MultisampleState {
             count: samples,
             ..default()
@@ -146,69 +128,70 @@ fn learned_descriptors(
         }
         let fragment = descriptor.fragment.as_mut()?;
         fragment.shader = shader.clone();
-        fragment.targets = model.targets[pass.targets.clone()]
-            .iter()
-            .map(|target| Some(state_of(target)))
-            .collect();
+        let targets = pass.targets.iter();
+        fragment.targets = targets.map(|target| Some(state_of(target))).collect();
         let defines = [
             Some("PEELNET".to_owned()),
             Some(pass_define(number)),
-            pass.needs_alpha.then(|| "PEELNET_NEEDS_ALPHA".to_owned()),
-            pass.needs_color.then(|| "PEELNET_NEEDS_COLOR".to_owned()),
+            pass.needs("alpha")
+                .then(|| "PEELNET_NEEDS_ALPHA".to_owned()),
+            pass.needs("rgb").then(|| "PEELNET_NEEDS_COLOR".to_owned()),
         ];
         let defines = defines.into_iter().flatten().map(ShaderDefVal::from);
         fragment.shader_defs.extend(defines);
         Some(descriptor)
     };
-    model.passes.iter().enumerate().map(descriptor).collect()
+    let passes = setup.model.description.passes.iter();
+    passes.enumerate().map(descriptor).collect()
 }
 
-fn resolve_descriptor(
-    format: TextureFormat,
-    samples: u32,
-    setup: &Setup,
-    fullscreen: &FullscreenShader,
-) -> RenderPipelineDescriptor {
-    RenderPipelineDescriptor {
-        label: Some("peelnet_resolve_pipeline".into()),
-        layout: vec![layout_of(&setup.model.resolve_reads, samples, false)],
-        vertex: fullscreen.to_vertex_state(),
-        fragment: Some(FragmentState {
-            shader: setup.resolve[usize::from(samples > 1)].clone(),
-            targets: vec![Some(ColorTargetState {
-                format,
-                // The resolve's colour is multiplied by its coverage.
-                blend: Some(BlendState::PREMULTIPLIED_ALPHA_BLENDING),
-                write_mask: ColorWrites::ALL,
-            })],
+/// The pipeline that composites into a view's texture, by its format and samples.
+impl SpecializedRenderPipeline for Setup {
+    type Key = (TextureFormat, u32);
+
+    fn specialize(&self, (format, samples): Self::Key) -> RenderPipelineDescriptor {
+        let reads = &self.model.description.resolve_reads;
+        let multisampled = (samples > 1).then(|| "MULTISAMPLED".into());
+        RenderPipelineDescriptor {
+            label: Some("peelnet_resolve_pipeline".into()),
+            layout: vec![layout_of(&self.model, reads, samples)],
+            vertex: self.fullscreen.to_vertex_state(),
+            fragment: Some(FragmentState {
+                shader: self.resolve.clone(),
+                shader_defs: multisampled.into_iter().collect(),
+                targets: vec![Some(ColorTargetState {
+                    format,
+                    // The resolve's colour is multiplied by its coverage.
+                    blend: Some(BlendState::PREMULTIPLIED_ALPHA_BLENDING),
+                    write_mask: ColorWrites::ALL,
+                })],
+                ..default()
+            }),
+            multisample: MultisampleState {
+                count: samples,
+                ..default()
+            },
             ..default()
-        }),
-        multisample: MultisampleState {
-            count: samples,
-            ..default()
-        },
-        ..default()
+        }
     }
 }
 
-/// The layout of a bind group with the targets that are read, and with the range of depths in passes over surfaces.
+/// The layout of a bind group with the range of depths and the targets that are read.
 pub(crate) fn layout_of(
-    targets: &[usize],
+    model: &PeelnetModel,
+    targets: &[String],
     samples: u32,
-    with_depths: bool,
 ) -> BindGroupLayoutDescriptor {
-    let depths = uniform_buffer::<Vec4>(false);
     let not_filtered = TextureSampleType::Float { filterable: false };
     let texture = if samples > 1 {
         texture_2d_multisampled(not_filtered)
     } else {
         texture_2d(not_filtered)
     };
-    let entry =
-        |binding, ty: BindGroupLayoutEntryBuilder| ty.build(binding, ShaderStages::FRAGMENT);
-    let mut entries: Vec<_> = with_depths.then(|| entry(0, depths)).into_iter().collect();
-    entries.extend(targets.iter().map(|&t| entry(binding(t), texture)));
-    BindGroupLayoutDescriptor::new("peelnet_layout", &entries)
+    let read = targets.iter().map(|t| (model.binding(t), texture));
+    let entries = std::iter::once((0, uniform_buffer::<Vec4>(false))).chain(read);
+    let entries = entries.map(|(binding, ty)| ty.build(binding, ShaderStages::FRAGMENT));
+    BindGroupLayoutDescriptor::new("peelnet_layout", &entries.collect::<Vec<_>>())
 }
 
 fn state_of(target: &Target) -> ColorTargetState {

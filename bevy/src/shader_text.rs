@@ -14,12 +14,6 @@ pub(crate) fn pass_define(pass: usize) -> String {
     format!("PEELNET_PASS_{pass}")
 }
 
-/// The binding of a target in the bind groups of passes, and in that of the resolve.
-pub(crate) fn binding(target: usize) -> u32 {
-    // 0 is the range of depths. A network has a handful of targets.
-    1 + u32::try_from(target).unwrap_or(u32::MAX)
-}
-
 /// The type of a target's texels, and how they are taken out of four channels.
 fn type_of(target: &Target) -> (&'static str, &'static str) {
     match target.format.components() {
@@ -29,46 +23,56 @@ fn type_of(target: &Target) -> (&'static str, &'static str) {
     }
 }
 
-/// Reads targets into variables of their names. The last argument is the sample of a multisampled texture, and the level of another, where it is 0.
-fn reads(model: &PeelnetModel, targets: &[usize], indent: &str) -> String {
-    targets.iter().fold(String::new(), |mut text, &index| {
-        let target = &model.targets[index];
-        let (name, (_, channels)) = (&target.name, type_of(target));
-        let _ = writeln!(
-            text,
-            "{indent}let {name} = textureLoad(peelnet_target_{name}, peelnet_at, peelnet_sample){channels};"
-        );
-        text
-    })
-}
-
-/// The module `bevy_peelnet::draw`.
-pub(crate) fn draw_text(model: &PeelnetModel) -> String {
-    let mut text =
-        String::from("import bevy_pbr::render::view_transformations::depth_ndc_to_view_z;\n\n");
-    text.push_str(&model.wgsl);
-    let _ = write!(
-        text,
-        "\n// Written by bevy_peelnet from the description of this network.\n
-// Near and far of the transparent surfaces in view, and the distance that both are counted from.
-@group({GROUP}) @binding(0) var<uniform> peelnet_depths: vec4f;
-"
+/// The network's own text, and the targets as textures of a bind group.
+fn network_text(model: &PeelnetModel, group: usize) -> String {
+    let mut text = format!(
+        "{}\n// Written by bevy_peelnet from the description of this network.\n\n",
+        model.wgsl
     );
-    for (index, target) in model.targets.iter().enumerate() {
-        let (name, binding) = (&target.name, binding(index));
+    for Target { name, .. } in model.targets() {
+        let binding = model.binding(name);
         for (condition, kind) in [
             ("MULTISAMPLED", "texture_multisampled_2d"),
             ("!MULTISAMPLED", "texture_2d"),
         ] {
             let _ = writeln!(
                 text,
-                "@if({condition})\n@group({GROUP}) @binding({binding}) var peelnet_target_{name}: {kind}<f32>;"
+                "@if({condition})\n@group({group}) @binding({binding}) var peelnet_target_{name}: {kind}<f32>;"
             );
         }
     }
-    text.push_str("\n// What a material's fragment shader returns in the pass that it is compiled for.\nstruct PeelnetOutput {\n");
-    for (number, pass) in model.passes.iter().enumerate() {
-        for (location, target) in model.targets[pass.targets.clone()].iter().enumerate() {
+    text
+}
+
+/// Reads targets into variables of their names. The last argument is the sample of a multisampled texture, and the level of another, where it is 0.
+fn reads(model: &PeelnetModel, names: &[String]) -> String {
+    let targets = model.targets().filter(|t| names.contains(&t.name));
+    let lines = targets.map(|target| {
+        let (name, (_, channels)) = (&target.name, type_of(target));
+        format!(
+            "    let {name} = textureLoad(peelnet_target_{name}, peelnet_at, peelnet_sample){channels};\n"
+        )
+    });
+    lines.collect()
+}
+
+/// The module `bevy_peelnet::draw`.
+pub(crate) fn draw_text(model: &PeelnetModel) -> String {
+    let passes = &model.description.passes;
+    let mut text = format!(
+        "import bevy_pbr::render::view_transformations::depth_ndc_to_view_z;
+
+{}
+// Near and far of the transparent surfaces in view, and the distance that both are counted from.
+@group({GROUP}) @binding(0) var<uniform> peelnet_depths: vec4f;
+
+// What a material's fragment shader returns in the pass that it is compiled for.
+struct PeelnetOutput {{
+",
+        network_text(model, GROUP)
+    );
+    for (number, pass) in passes.iter().enumerate() {
+        for (location, target) in pass.targets.iter().enumerate() {
             let (define, name) = (pass_define(number), &target.name);
             let (kind, _) = type_of(target);
             let _ = writeln!(
@@ -95,13 +99,13 @@ fn peelnet_output(position: vec4f, sample_index: u32, color: vec4f) -> PeelnetOu
     var peelnet_out: PeelnetOutput;
 ",
     );
-    for (number, pass) in model.passes.iter().enumerate() {
+    for (number, pass) in passes.iter().enumerate() {
         let _ = writeln!(text, "@if({}) {{", pass_define(number));
-        text.push_str(&reads(model, &pass.reads, "    "));
-        if !pass.compute.is_empty() {
-            let _ = writeln!(text, "    {}", pass.compute);
+        text.push_str(&reads(model, &pass.reads));
+        if let Some(compute) = &pass.compute {
+            let _ = writeln!(text, "    {compute}");
         }
-        for target in &model.targets[pass.targets.clone()] {
+        for target in &pass.targets {
             let _ = writeln!(text, "    peelnet_out.{} = {};", target.name, target.write);
         }
         text.push_str("}\n");
@@ -111,44 +115,27 @@ fn peelnet_output(position: vec4f, sample_index: u32, color: vec4f) -> PeelnetOu
 }
 
 /// The full-screen shader that composites a pixel's sums, or a sample's. Its answer is premultiplied by coverage, for blending over the opaque scene.
-pub(crate) fn resolve_text(model: &PeelnetModel, multisampled: bool) -> String {
-    let mut text = model.wgsl.to_string();
-    text.push_str("\n// Written by bevy_peelnet from the description of this network.\n\n");
-    let kind = if multisampled {
-        "texture_multisampled_2d"
-    } else {
-        "texture_2d"
-    };
-    for &index in &model.resolve_reads {
-        let (name, binding) = (&model.targets[index].name, binding(index));
-        let _ = writeln!(
-            text,
-            "@group(0) @binding({binding}) var peelnet_target_{name}: {kind}<f32>;"
-        );
-    }
-    let (parameter, sample) = if multisampled {
-        (
-            ", @builtin(sample_index) sample_index: u32",
-            "i32(sample_index)",
-        )
-    } else {
-        ("", "0")
-    };
-    let _ = write!(
-        text,
-        "
+pub(crate) fn resolve_text(model: &PeelnetModel) -> String {
+    format!(
+        "{}
 @fragment
-fn peelnet_resolve_pixel(@builtin(position) position: vec4f{parameter}) -> @location(0) vec4f {{
+fn peelnet_resolve_pixel(
+    @builtin(position) position: vec4f,
+@if(MULTISAMPLED)
+    @builtin(sample_index) sample_index: u32,
+) -> @location(0) vec4f {{
+@if(!MULTISAMPLED)
+    let sample_index = 0u;
     let peelnet_at = vec2i(position.xy);
-    let peelnet_sample = {sample};
+    let peelnet_sample = i32(sample_index);
 {}    let background = vec3f(0.0);
     return {};
 }}
 ",
-        reads(model, &model.resolve_reads, "    "),
-        model.resolve
-    );
-    text
+        network_text(model, 0),
+        reads(model, &model.description.resolve_reads),
+        model.description.resolve
+    )
 }
 
 #[cfg(test)]
@@ -157,24 +144,16 @@ mod tests {
 
     #[test]
     fn every_pass_reads_and_writes_what_the_description_says() {
-        let text = draw_text(&PeelnetModel::medium());
+        let model = PeelnetModel::medium();
+        let text = draw_text(&model) + &resolve_text(&model);
         for line in [
             "let range = textureLoad(peelnet_target_range, peelnet_at, peelnet_sample).xy;",
             "let s = peelnet_statistics(alpha, zeta, range);",
             "peelnet_out.nearest = s.nearest;",
             "peelnet_out.sums = vec4f(alpha * rgb, alpha) * w;",
+            "return peelnet_resolve(sums, absorbances.x",
         ] {
             assert!(text.contains(line), "{line}\n{text}");
         }
-    }
-
-    #[test]
-    fn samples_are_resolved_one_by_one() {
-        let model = PeelnetModel::medium();
-        let one = resolve_text(&model, false);
-        let four = resolve_text(&model, true);
-        assert!(!one.contains("sample_index"));
-        assert!(four.contains("@builtin(sample_index)") && four.contains("i32(sample_index)"));
-        assert!(four.contains("return peelnet_resolve(sums, absorbances.x"));
     }
 }

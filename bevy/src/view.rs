@@ -1,10 +1,8 @@
 //! What a view with learned transparency has on the GPU.
 
 use crate::{
-    depths::Depths,
     phase::Learned3d,
     pipelines::{Setup, layout_of},
-    shader_text::binding,
 };
 use bevy::{
     image::ToExtents,
@@ -23,110 +21,88 @@ use bevy::{
     },
 };
 
-/// The state of one view.
+#[derive(Default)]
 pub(crate) struct LearnedView {
-    pub resolve: CachedRenderPipelineId,
-    pub samples: u32,
-    pub depths: Depths,
+    pub resolve: Option<CachedRenderPipelineId>,
+    /// Near and far of the weighed surfaces, and what both are counted from.
+    pub depths: Vec4,
     /// Frames in a row in which nothing was weighed.
     pub frames_without: u32,
     /// This frame's, if something is weighed.
-    pub textures: Vec<CachedTexture>,
-    /// Of each pass, and of the resolve.
-    pub groups: Vec<BindGroup>,
-    pub resolve_group: Option<BindGroup>,
+    pub targets: Option<Targets>,
     uniform: UniformBuffer<Vec4>,
 }
 
-impl LearnedView {
-    pub fn new(resolve: CachedRenderPipelineId, samples: u32) -> Self {
-        Self {
-            resolve,
-            samples,
-            depths: Depths::default(),
-            frames_without: 0,
-            textures: Vec::new(),
-            groups: Vec::new(),
-            resolve_group: None,
-            uniform: UniformBuffer::default(),
-        }
-    }
+/// The targets by their names, and the bind groups that read them.
+pub(crate) struct Targets {
+    pub textures: HashMap<String, CachedTexture>,
+    /// Of each pass.
+    pub groups: Vec<BindGroup>,
+    pub resolve_group: BindGroup,
 }
 
 /// The state of all views.
 #[derive(Default, Resource)]
 pub(crate) struct LearnedViews(pub HashMap<RetainedViewEntity, LearnedView>);
 
-/// Targets, and the bind groups that read them, for this frame. Views without a weighed surface get none.
+/// Targets for this frame. Views without a weighed surface get none.
 pub(crate) fn prepare_views(
     setup: Option<Res<Setup>>,
     mut views: ResMut<LearnedViews>,
     phases: Res<ViewSortedRenderPhases<Learned3d>>,
-    cameras: Query<(&ExtractedView, &ExtractedCamera)>,
+    cameras: Query<(&ExtractedView, &ExtractedCamera, &Msaa)>,
     cache: Res<PipelineCache>,
     device: Res<RenderDevice>,
     queue: Res<RenderQueue>,
     mut textures: ResMut<TextureCache>,
 ) {
     let Some(setup) = setup else { return };
-    for (extracted, camera) in &cameras {
+    for (extracted, camera, msaa) in &cameras {
         let id = extracted.retained_view_entity;
         let Some(view) = views.0.get_mut(&id) else {
             continue;
         };
-        view.textures.clear();
-        view.groups.clear();
-        view.resolve_group = None;
+        view.targets = None;
         let weighed = phases.get(&id).is_some_and(|phase| !phase.items.is_empty());
         let (true, Some(size)) = (weighed, camera.physical_target_size) else {
             continue;
         };
-        view.uniform.set(view.depths.uniform());
+        view.uniform.set(view.depths);
         view.uniform.write_buffer(&device, &queue);
-        view.make(&setup, size, &cache, &device, &mut textures);
-    }
-}
-
-impl LearnedView {
-    fn make(
-        &mut self,
-        setup: &Setup,
-        size: UVec2,
-        cache: &PipelineCache,
-        device: &RenderDevice,
-        textures: &mut TextureCache,
-    ) {
-        let model = &setup.model;
-        self.textures.extend(model.targets.iter().map(|target| {
-            let descriptor = TextureDescriptor {
-                label: Some("peelnet_target"),
-                size: size.to_extents(),
-                mip_level_count: 1,
-                sample_count: self.samples,
-                dimension: TextureDimension::D2,
-                format: target.format,
-                usage: TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING,
-                view_formats: &[],
-            };
-            textures.get(device, descriptor)
-        }));
-        let group = |targets: &[usize], uniform: Option<BindingResource<'_>>| {
-            let layout = layout_of(targets, self.samples, uniform.is_some());
-            let depths = uniform.map(|resource| BindGroupEntry {
+        let samples = msaa.samples();
+        let sized = |format| TextureDescriptor {
+            label: Some("peelnet_target"),
+            size: size.to_extents(),
+            mip_level_count: 1,
+            sample_count: samples,
+            dimension: TextureDimension::D2,
+            format,
+            usage: TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING,
+            view_formats: &[],
+        };
+        let made = setup.model.targets().map(|target| {
+            let texture = textures.get(&device, sized(target.format));
+            (target.name.clone(), texture)
+        });
+        let made: HashMap<String, CachedTexture> = made.collect();
+        let group = |reads: &Vec<String>| {
+            let depths = view.uniform.binding().map(|resource| BindGroupEntry {
                 binding: 0,
                 resource,
             });
-            let read = targets.iter().map(|&target| BindGroupEntry {
-                binding: binding(target),
-                resource: BindingResource::TextureView(&self.textures[target].default_view),
+            let read = reads.iter().map(|target| BindGroupEntry {
+                binding: setup.model.binding(target),
+                resource: BindingResource::TextureView(&made[target].default_view),
             });
             let entries: Vec<_> = depths.into_iter().chain(read).collect();
-            let layout = cache.get_bind_group_layout(&layout);
+            let layout = cache.get_bind_group_layout(&layout_of(&setup.model, reads, samples));
             device.create_bind_group("peelnet_bind_group", &layout, &entries)
         };
-        let passes = model.passes.iter();
-        let groups = passes.map(|pass| group(&pass.reads, self.uniform.binding()));
-        (self.groups, self.resolve_group) =
-            (groups.collect(), Some(group(&model.resolve_reads, None)));
+        let description = &setup.model.description;
+        view.targets = Some(Targets {
+            groups: description.passes.iter().map(|p| group(&p.reads)).collect(),
+            resolve_group: group(&description.resolve_reads),
+            textures: made,
+        });
     }
 }

@@ -13,7 +13,7 @@ use bevy::{
 };
 use bevy_peelnet::{Gravity, PeelnetPlugin};
 use support::{
-    cards::{self, Card},
+    cards::{self, Card, spawn_of},
     headless::Headless,
 };
 
@@ -22,39 +22,28 @@ const SIZE: UVec2 = UVec2::new(256, 192);
 const HOOKED: Handle<Shader> = uuid_handle!("6d1c1f9e-6f0b-4b53-9b8e-0a5a3c9d7e01");
 const PLAIN: Handle<Shader> = uuid_handle!("6d1c1f9e-6f0b-4b53-9b8e-0a5a3c9d7e02");
 
-const BINDING: &str = "
+const SHARED: &str = "
 import bevy_pbr::render::forward_io::VertexOutput;
 
 @group(constants::MATERIAL_BIND_GROUP) @binding(0) var<uniform> material_color: vec4f;
 
-fn shade(in: VertexOutput) -> vec4f {
+@if(!PEELNET)
+@fragment
+fn fragment(in: VertexOutput) -> @location(0) vec4f {
     return material_color;
 }
 ";
 
-const WITH_HOOK: &str = "
+const IMPORT: &str = "
 @if(PEELNET)
 import bevy_peelnet::draw::{PeelnetOutput, peelnet_output};
 ";
 
-const ENTRY_POINTS: &str = "
-@if(!PEELNET)
-@fragment
-fn fragment(in: VertexOutput) -> @location(0) vec4f {
-    return shade(in);
-}
-
+const HOOK: &str = "
 @if(PEELNET)
 @fragment
 fn fragment(in: VertexOutput, @builtin(sample_index) sample_index: u32) -> PeelnetOutput {
-    return peelnet_output(in.position, sample_index, shade(in));
-}
-";
-
-const WITHOUT_HOOK: &str = "
-@fragment
-fn fragment(in: VertexOutput) -> @location(0) vec4f {
-    return shade(in);
+    return peelnet_output(in.position, sample_index, material_color);
 }
 ";
 
@@ -99,8 +88,8 @@ fn application(msaa: Msaa) -> Headless {
     ));
     let mut shaders = app.world_mut().resource_mut::<Assets<Shader>>();
     // Imports stand first.
-    let hooked = [WITH_HOOK, BINDING, ENTRY_POINTS].concat();
-    let plain = [BINDING, WITHOUT_HOOK].concat();
+    let hooked = [IMPORT, SHARED, HOOK].concat();
+    let plain = SHARED.to_owned();
     for (handle, text, name) in [(HOOKED, hooked, "hooked"), (PLAIN, plain, "plain")] {
         let shader = Shader::from_wesl(text, format!("tests/{name}.wesl"));
         shaders
@@ -108,15 +97,6 @@ fn application(msaa: Msaa) -> Headless {
             .expect("a constant handle");
     }
     headless
-}
-
-fn spawn<M: Material>(headless: &mut Headless, card: &Card, material: M) {
-    let world = headless.app.world_mut();
-    let mesh = world
-        .resource_mut::<Assets<Mesh>>()
-        .add(Rectangle::new(1.0, 1.0));
-    let material = world.resource_mut::<Assets<M>>().add(material);
-    world.spawn((Mesh3d(mesh), MeshMaterial3d(material), card.transform));
 }
 
 /// Cards that face the camera: culled materials show their fronts.
@@ -142,8 +122,8 @@ fn check<M: Material, N: Material>(
 ) {
     let scene = facing();
     let mut headless = application(msaa);
-    spawn(&mut headless, &scene[0], near(scene[0].color));
-    spawn(&mut headless, &scene[1], far(scene[1].color));
+    spawn_of(&mut headless.app, &scene[0], near(scene[0].color));
+    spawn_of(&mut headless.app, &scene[1], far(scene[1].color));
     let errors = headless.errors(&scene);
     assert!(errors.max <= most, "{errors:?}");
     assert_eq!(warnings(&headless), [""; 0]);
@@ -173,8 +153,8 @@ fn a_material_without_the_hook_is_drawn_by_bevy_and_said_once() {
     let [near, far] = &scene;
     let mut headless = application(Msaa::Off);
     // In front, where Bevy's drawing after the weighed surfaces is right.
-    spawn(&mut headless, near, Plain { color: near.color });
-    spawn(&mut headless, far, cards::material(far.color));
+    spawn_of(&mut headless.app, near, Plain { color: near.color });
+    spawn_of(&mut headless.app, far, cards::material(far.color));
     let errors = headless.errors(&scene);
     assert!(errors.max <= 1.0, "{errors:?}");
     let warnings = warnings(&headless);
@@ -202,7 +182,7 @@ fn light_falls_on_weighed_surfaces_as_on_sorted_ones() {
             unlit: false,
             ..cards::material(card.color)
         };
-        spawn(&mut headless, &card, lit);
+        spawn_of(&mut headless.app, &card, lit);
     }
     let light = (PointLight::default(), Transform::from_xyz(1.0, 1.0, 3.0));
     headless.app.world_mut().spawn(light);
@@ -221,7 +201,7 @@ fn sums_of_light_stay_with_bevy() {
         alpha_mode: AlphaMode::Add,
         ..cards::material(near.color)
     };
-    spawn(&mut headless, &near, added);
-    spawn(&mut headless, &far, cards::material(far.color));
+    spawn_of(&mut headless.app, &near, added);
+    spawn_of(&mut headless.app, &far, cards::material(far.color));
     same_when_sorted(headless);
 }

@@ -19,7 +19,6 @@ const SIZE: UVec2 = UVec2::new(256, 192);
 /// What 8 bits, and the 16 bits of Bevy's texture before them, may round.
 const ROUNDED: f64 = 1.0;
 
-/// An application with a scene and learned transparency.
 fn learned(scene: &[Card], msaa: Msaa, model: PeelnetModel) -> Headless {
     Headless::new(SIZE, msaa, model, scene).learned()
 }

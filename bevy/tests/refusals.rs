@@ -12,7 +12,7 @@ use bevy::{
         error_handler::{RenderErrorHandler, RenderErrorPolicy},
         render_resource::PollType,
         renderer::{RenderAdapter, RenderDevice},
-        settings::{WgpuLimits, WgpuSettings},
+        settings::WgpuSettings,
     },
 };
 use bevy_peelnet::{Gravity, PeelnetModel, PeelnetPlugin};
@@ -63,25 +63,28 @@ fn networks_of_another_version_or_recipe() {
 }
 
 #[test]
-fn a_device_with_few_bind_groups() {
-    let settings = WgpuSettings {
-        constrained_limits: Some(WgpuLimits {
-            max_bind_groups: 4,
-            // All else as the adapter has it.
-            ..unlimited()
-        }),
-        ..default()
-    };
-    let headless = crossing(PeelnetPlugin::default(), settings);
-    assert_refused(headless, 0, Gravity::Error, &["5 bind groups"]);
-}
-
-/// Bounds that no adapter reaches.
-fn unlimited() -> WgpuLimits {
+fn a_device_of_low_limits() {
     let mut headless = usual();
     headless.run(1);
     let render = headless.app.sub_app(RenderApp).world();
-    render.resource::<RenderAdapter>().limits()
+    // All else as the adapter has it.
+    let usual = render.resource::<RenderAdapter>().limits();
+    let (mut groups, mut bytes, mut targets) = (usual.clone(), usual.clone(), usual);
+    groups.max_bind_groups = 4;
+    bytes.max_color_attachment_bytes_per_sample = 16;
+    targets.max_color_attachments = 2;
+    for (limits, says) in [
+        (groups, "5 bind groups"),
+        (bytes, "24 bytes a sample"),
+        (targets, "3 targets"),
+    ] {
+        let settings = WgpuSettings {
+            constrained_limits: Some(limits),
+            ..default()
+        };
+        let headless = crossing(PeelnetPlugin::default(), settings);
+        assert_refused(headless, 0, Gravity::Error, &[says]);
+    }
 }
 
 fn usual() -> Headless {

@@ -1,16 +1,16 @@
 //! Measurements: error against time, and what to choose.
 
 use crate::{
-    argument::{Argument, Arguments},
+    argument::load,
     failure::{failed, raised, warn, wrong},
     gpu, json,
     model::Model,
     render::{method, sampled, sized},
     scene::{Scene, loaded},
-    watch::{Bar, Reporter, watch},
+    watch::{Bar, watch},
 };
 use peelnet::{
-    Compared, Failure, Gpu, MethodSpec,
+    Compared, Failure, MethodSpec,
     bench::{
         Partial, Row,
         bench::{Bench, Progress, bench_watched},
@@ -21,92 +21,54 @@ use peelnet::{
     report::Results,
 };
 use pyo3::prelude::*;
-use std::{path::PathBuf, sync::atomic::AtomicBool};
+use std::path::PathBuf;
 
-struct Measure {
-    size: [u32; 2],
-    samples: u32,
-    views: Option<usize>,
-    frames: u32,
-    compared: Compared,
-    /// Whether methods that this adapter cannot draw are left out.
-    lenient: bool,
+/// What to compare: the methods named, or all; with the shipped networks where none is given.
+fn compared(named: Option<Vec<String>>, models: Vec<peelnet::Model>) -> PyResult<Compared> {
+    let named = named.map(|names| names.iter().map(|name| method(name)).collect());
+    let named = named.transpose()?;
+    let mut compared = Compared::new(named, models, MethodSpec::compared).map_err(raised)?;
+    let base = method(BASE)?;
+    if !compared.methods.contains(&base) {
+        compared.methods.push(base);
+    }
+    Ok(compared)
 }
 
-impl Measure {
-    /// What to compare: the methods named, or all; with the shipped networks where none is given.
-    fn new(named: Option<Vec<String>>, models: Vec<peelnet::Model>) -> PyResult<Self> {
-        let lenient = named.is_none();
-        let named = named.map(|names| {
-            names
-                .iter()
-                .map(|n| method(n))
-                .collect::<PyResult<Vec<_>>>()
-        });
-        let named = named.transpose()?;
-        let mut compared = Compared::new(named, models, MethodSpec::compared).map_err(raised)?;
-        let base = method(BASE)?;
-        if !compared.methods.contains(&base) {
-            compared.methods.push(base);
-        }
-        Ok(Self {
-            size: [1024, 768],
-            samples: 1,
-            views: None,
-            frames: 5,
-            compared,
-            lenient,
-        })
-    }
-
-    fn run(
-        &self,
-        gpu: &Gpu,
-        scenes: &[peelnet::Scene],
-        stop: &AtomicBool,
-        reporter: &Reporter<Progress>,
-    ) -> Result<Bench, Failure> {
-        let learned = self.compared.weights(gpu)?;
-        let plan = Plan {
-            size: self.size,
-            samples: self.samples,
-            methods: &self.compared.methods,
-            learned: &learned,
-            models: &self.compared.models,
-            lenient: self.lenient,
-            views: self.views,
-            frames: self.frames,
-            images: None,
-        };
-        let partial = Partial::new(None, serde_json::Value::Null);
-        let mut show = |event: Progress| match event {
-            Progress::Drawn { .. } => reporter.say(event),
-            Progress::LeftOut(_) => reporter.ask(event),
-        };
-        let bench = bench_watched(gpu, scenes, &plan, partial, stop, &mut show)?;
-        Ok(bench)
-    }
-
-    fn watched<'py>(
-        &self,
-        py: Python<'py>,
-        scenes: &[peelnet::Scene],
-        adapter: &str,
-        progress: Option<Bound<'py, PyAny>>,
-    ) -> PyResult<Bench> {
-        let gpu = gpu::open(py, adapter)?;
-        let mut bar = Bar::new(progress)?;
-        let result = watch(
-            py,
-            |stop, reporter| self.run(&gpu, scenes, stop, reporter),
-            |py, event| match event {
-                Progress::Drawn { done, total, what } => bar.set(done, total, &what),
-                Progress::LeftOut(what) => warn(py, &what),
-            },
-        )
-        .and_then(|result| result.map_err(raised));
-        bar.close(result)
-    }
+/// Measures methods by the rest of a plan.
+fn measured<'py>(
+    py: Python<'py>,
+    scenes: &[peelnet::Scene],
+    compared: &Compared,
+    plan: Plan<'_>,
+    adapter: &str,
+    progress: Option<Bound<'py, PyAny>>,
+) -> PyResult<Bench> {
+    let gpu = gpu::open(py, adapter)?;
+    let mut bar = Bar::new(progress)?;
+    let result = watch(
+        py,
+        |stop, reporter| {
+            let plan = Plan {
+                methods: &compared.methods,
+                learned: &compared.weights(&gpu)?,
+                models: &compared.models,
+                ..plan
+            };
+            let partial = Partial::new(None, serde_json::Value::Null);
+            let mut show = |event: Progress| match event {
+                Progress::Drawn { .. } => reporter.say(event),
+                Progress::LeftOut(_) => reporter.ask(event),
+            };
+            let bench = bench_watched(&gpu, scenes, &plan, partial, stop, &mut show)?;
+            Ok::<_, Failure>(bench)
+        },
+        |py, event| match event {
+            Progress::Drawn { done, total, what } => bar.set(done, total, &what),
+            Progress::LeftOut(what) => warn(py, &what),
+        },
+    );
+    bar.close(result)
 }
 
 /// Compares methods on scenes: error against the exact image, and time.
@@ -131,9 +93,9 @@ impl Measure {
 #[allow(clippy::too_many_arguments, reason = "keyword arguments of Python")]
 pub fn bench<'py>(
     py: Python<'py>,
-    scenes: Arguments<Scene>,
+    scenes: &Bound<'py, PyAny>,
     methods: Option<Vec<String>>,
-    models: Option<Vec<Argument<Model>>>,
+    models: Option<Vec<Bound<'py, PyAny>>>,
     size: (u32, u32),
     views: Option<usize>,
     frames: u32,
@@ -141,17 +103,19 @@ pub fn bench<'py>(
     adapter: &str,
     progress: Option<Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let models = models.unwrap_or_default().into_iter();
-    let models = models.map(|model| Ok(model.load(py)?.0));
-    let measure = Measure {
-        size: sized(size)?,
+    let models = models.unwrap_or_default();
+    let models = models.iter().map(|model| Ok(load::<Model>(model)?.0));
+    let plan = Plan {
         samples: sampled(samples)?,
+        // Of all methods, those that this adapter cannot draw are left out.
+        lenient: methods.is_none(),
         views,
         frames,
-        ..Measure::new(methods, models.collect::<PyResult<_>>()?)?
+        ..Plan::new(sized(size)?, &[])
     };
-    let scenes = loaded(scenes, py)?;
-    let bench = measure.watched(py, &scenes, adapter, progress)?;
+    let compared = compared(methods, models.collect::<PyResult<_>>()?)?;
+    let scenes = loaded(scenes)?;
+    let bench = measured(py, &scenes, &compared, plan, adapter, progress)?;
     let convert = py.import("peelnet._convert")?;
     convert.call_method1("frame", (json::to_python(py, &bench.rows)?,))
 }
@@ -245,7 +209,7 @@ fn rows_of(results: &Bound<'_, PyAny>) -> PyResult<Vec<Row>> {
 #[allow(clippy::too_many_arguments, reason = "keyword arguments of Python")]
 pub fn recommend<'py>(
     py: Python<'py>,
-    scene: Argument<Scene>,
+    scene: &Bound<'py, PyAny>,
     budget_ms: Option<f64>,
     max_error: Option<f64>,
     max_bytes: Option<f64>,
@@ -264,17 +228,18 @@ pub fn recommend<'py>(
             return Err(wrong(format!("{name} is not a number above 0")));
         }
     }
-    let scene = scene.load(py)?.scene;
+    let scene = load::<Scene>(scene)?.scene;
     let rows = match results {
         Some(results) => rows_of(&results)?,
         None => {
-            let measure = Measure {
-                size: sized(size)?,
+            let plan = Plan {
+                lenient: true,
                 frames,
-                ..Measure::new(None, Vec::new())?
+                ..Plan::new(sized(size)?, &[])
             };
             let scenes = std::slice::from_ref(&*scene);
-            measure.watched(py, scenes, adapter, progress)?.rows
+            let compared = compared(None, Vec::new())?;
+            measured(py, scenes, &compared, plan, adapter, progress)?.rows
         }
     };
     let (found, warning) = judged(&rows, &scene.name);

@@ -38,10 +38,7 @@ pub fn raised(error: impl Into<Failure>) -> PyErr {
     }
 }
 
-/// A warning, as the command line prints it to stderr.
-///
-/// # Errors
-/// Where Python was asked to turn warnings into errors.
+/// A warning, as the command line prints it to stderr; an error where Python was asked to turn warnings into errors.
 pub fn warn(py: Python<'_>, text: &str) -> PyResult<()> {
     let text = peelnet_files::printable_lines(text);
     let text = CString::new(text.replace('\0', " "))?;

@@ -3,28 +3,25 @@
 use crate::failure::raised;
 use peelnet::{AdapterRequest, Gpu};
 use pyo3::prelude::*;
-use std::sync::{Mutex, PoisonError};
+use std::{
+    collections::BTreeMap,
+    sync::{Mutex, PoisonError},
+};
 
-/// Process, request, adapter. A forked process cannot use its parent's.
-static OPEN: Mutex<Vec<(u32, String, Gpu)>> = Mutex::new(Vec::new());
+/// By process and request: a forked process cannot use its parent's.
+static OPEN: Mutex<BTreeMap<(u32, String), Gpu>> = Mutex::new(BTreeMap::new());
 
 /// The adapter of a request: `auto`, `software`, or a part of a name.
-///
-/// # Errors
-/// No such adapter.
 pub fn open(py: Python<'_>, request: &str) -> PyResult<Gpu> {
     py.detach(|| {
         let mut open = OPEN.lock().unwrap_or_else(PoisonError::into_inner);
-        let process = std::process::id();
-        if let Some((_, _, gpu)) = open
-            .iter()
-            .find(|(p, name, _)| (*p, name.as_str()) == (process, request))
-        {
+        let key = (std::process::id(), request.to_owned());
+        if let Some(gpu) = open.get(&key) {
             return Ok(gpu.clone());
         }
         let Ok(wanted) = request.parse::<AdapterRequest>();
         let gpu = Gpu::open(&wanted)?;
-        open.push((process, request.to_owned(), gpu.clone()));
+        open.insert(key, gpu.clone());
         Ok(gpu)
     })
     .map_err(|e: peelnet::gpu::GpuError| raised(e))

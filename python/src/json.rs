@@ -4,9 +4,6 @@ use crate::failure::failed;
 use pyo3::prelude::*;
 
 /// Lists, dicts and numbers.
-///
-/// # Errors
-/// A value that JSON cannot hold.
 pub fn to_python<'py>(
     py: Python<'py>,
     value: &impl serde::Serialize,

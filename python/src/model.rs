@@ -1,7 +1,7 @@
 //! Models: their files, their weights, and shader text made of them.
 
 use crate::{
-    argument::{Argument, FromFile},
+    argument::{FromFile, load},
     failure::{failed, raised, wrong},
     gpu, json,
     watch::{Reporter, watch},
@@ -248,7 +248,7 @@ impl FromFile for Model {
 #[pyo3(signature = (model, language="wgsl", *, precision="f32", verify=true, adapter="auto"))]
 pub fn export(
     py: Python<'_>,
-    model: Argument<Model>,
+    model: &Bound<'_, PyAny>,
     language: &str,
     precision: &str,
     verify: bool,
@@ -256,7 +256,7 @@ pub fn export(
 ) -> PyResult<String> {
     let language = named("language", LANGUAGES, language).map_err(wrong)?;
     let precision = named("precision", PRECISIONS, precision).map_err(wrong)?;
-    let Model(model) = model.load(py)?;
+    let Model(model) = load(model)?;
     let options = Options {
         language,
         precision,
@@ -272,11 +272,10 @@ pub fn export(
             py,
             |_, _: &Reporter<()>| {
                 let wgsl = peelnet::export::text(&model, &in_wgsl)?;
-                peelnet::export::verify(&gpu, &model, &wgsl).map(|_| ())
+                peelnet::export::verify(&gpu, &model, &wgsl)
             },
             |_, ()| Ok(()),
-        )?
-        .map_err(raised)?;
+        )?;
     }
     Ok(text)
 }

@@ -1,7 +1,7 @@
 //! Frames as numpy arrays.
 
 use crate::{
-    argument::Argument,
+    argument::load,
     failure::{failed, raised, warn, wrong},
     gpu,
     model::Model,
@@ -17,9 +17,6 @@ use peelnet::{
 use pyo3::prelude::*;
 
 /// The size of a frame, checked.
-///
-/// # Errors
-/// No pixel.
 pub fn sized(size: (u32, u32)) -> PyResult<[u32; 2]> {
     if size.0 == 0 || size.1 == 0 {
         return Err(wrong("a frame needs at least 1x1 pixels"));
@@ -28,9 +25,6 @@ pub fn sized(size: (u32, u32)) -> PyResult<[u32; 2]> {
 }
 
 /// Samples a pixel, checked.
-///
-/// # Errors
-/// Neither 1 nor 4.
 pub fn sampled(samples: u32) -> PyResult<u32> {
     match samples {
         1 | 4 => Ok(samples),
@@ -39,9 +33,6 @@ pub fn sampled(samples: u32) -> PyResult<u32> {
 }
 
 /// A method's name with its parameters.
-///
-/// # Errors
-/// No such method or parameter.
 pub fn method(name: &str) -> PyResult<MethodSpec> {
     name.parse().map_err(raised)
 }
@@ -69,14 +60,14 @@ pub fn method(name: &str) -> PyResult<MethodSpec> {
 #[allow(clippy::too_many_arguments, reason = "keyword arguments of Python")]
 pub fn render<'py>(
     py: Python<'py>,
-    scene: Argument<Scene>,
+    scene: &Bound<'py, PyAny>,
     method: &str,
     size: (u32, u32),
     view: Option<u32>,
     camera: Option<Bound<'py, Camera>>,
     time: Option<f32>,
     samples: u32,
-    model: Option<Argument<Model>>,
+    model: Option<Bound<'py, PyAny>>,
     dtype: &str,
     adapter: &str,
 ) -> PyResult<Bound<'py, PyAny>> {
@@ -87,18 +78,18 @@ pub fn render<'py>(
             "dtype '{dtype}': there are float32 and uint8"
         )));
     }
-    let mut scene = scene.load(py)?;
+    let mut scene = load::<Scene>(scene)?;
     if let Some(time) = time {
         scene = scene.at(py, time)?;
     }
     let scene = scene.scene;
     let camera = match (view, camera) {
         (Some(_), Some(_)) => return Err(wrong("view and camera exclude each other")),
-        (None, Some(camera)) => (*camera.get()).into(),
+        (None, Some(camera)) => camera.get().0,
         (view, None) => *view_of(&scene, view.unwrap_or(0)).map_err(raised)?,
     };
-    let given = model.map(|m| m.load(py)).transpose()?.map(|m| m.0);
-    let model = model_for(&spec, given).map_err(raised)?;
+    let given = model.map(|model| load::<Model>(&model)).transpose()?;
+    let model = model_for(&spec, given.map(|model| model.0)).map_err(raised)?;
     let gpu = gpu::open(py, adapter)?;
     let draw = || -> Result<Frame, Failure> {
         let learned = model.map(|m| weight_of(&gpu, &m)).transpose()?;
@@ -107,7 +98,7 @@ pub fn render<'py>(
         let mut prepared = renderer.method(&spec, options.with(learned.as_ref()))?;
         Ok(renderer.image(&mut prepared, &camera)?)
     };
-    let frame = watch(py, |_, _: &Reporter<()>| draw(), |_, ()| Ok(()))?.map_err(raised)?;
+    let frame = watch(py, |_, _: &Reporter<()>| draw(), |_, ()| Ok(()))?;
     for warning in frame.warnings() {
         warn(py, &format!("{spec}: {warning}"))?;
     }

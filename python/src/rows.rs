@@ -1,21 +1,22 @@
 //! Fragments as rows: in memory as Arrow, or a dataset's folder.
 
 use crate::{
-    argument::{Arguments, FromFile},
-    failure::{failed, raised, warn, wrong},
+    argument::FromFile,
+    failure::{raised, warn, wrong},
     gpu,
     render::sized,
-    scene::{Scene, loaded},
+    scene::loaded,
     watch::{Bar, Reporter, watch},
 };
 use arrow_array::{
-    Array as _, ArrayRef, Float32Array, RecordBatch, RecordBatchIterator, UInt32Array,
+    ArrayRef, ArrowPrimitiveType, Float32Array, RecordBatch, RecordBatchIterator, UInt32Array,
+    cast::AsArray as _,
     ffi_stream::FFI_ArrowArrayStream,
+    types::{Float32Type, UInt32Type},
 };
-use arrow_schema::{ArrowError, DataType, Field, Schema, SchemaRef};
 use numpy::{Element, IntoPyArray as _};
 use peelnet::{
-    Gpu,
+    Failure, Gpu,
     dataset::{self, Column, ColumnKind, FragmentBatch},
     extract::{self, ExtractOptions, ExtractReport, PeelError, Progress, items},
 };
@@ -43,28 +44,15 @@ use std::{
 /// - fragment_count, view, x, y, layer: uint32; `view` indexes `views`, `layer` counts from the front
 #[pyclass(frozen, module = "peelnet")]
 pub struct Rows {
-    schema: SchemaRef,
     batches: Vec<RecordBatch>,
-    rows: usize,
-}
-
-fn schema() -> SchemaRef {
-    let field = |column: Column| {
-        let kind = match column.kind() {
-            ColumnKind::F32 => DataType::Float32,
-            ColumnKind::U32 => DataType::UInt32,
-        };
-        Field::new(column.name(), kind, false)
-    };
-    Arc::new(Schema::new(Column::ALL.map(field).to_vec()))
 }
 
 /// A batch whose columns become Arrow's without a copy.
-fn record_batch(schema: &SchemaRef, batch: FragmentBatch) -> Result<RecordBatch, ArrowError> {
+fn record_batch(batch: FragmentBatch) -> Result<RecordBatch, Failure> {
     let f = |values: Vec<f32>| Arc::new(Float32Array::new(values.into(), None)) as ArrayRef;
     let u = |values: Vec<u32>| Arc::new(UInt32Array::new(values.into(), None)) as ArrayRef;
     let b = batch;
-    let columns = vec![
+    let columns = [
         f(b.one_minus_alpha),
         f(b.linear_depth),
         f(b.alpha_sum),
@@ -80,33 +68,24 @@ fn record_batch(schema: &SchemaRef, batch: FragmentBatch) -> Result<RecordBatch,
         f(b.near),
         f(b.far),
     ];
-    RecordBatch::try_new(Arc::clone(schema), columns)
+    let columns = Column::ALL.into_iter().zip(columns);
+    let columns = columns.map(|(column, values)| (column.name(), values, false));
+    Ok(RecordBatch::try_from_iter_with_nullable(columns)?)
 }
 
 impl Rows {
-    fn new(schema: SchemaRef, batches: Vec<RecordBatch>) -> Self {
-        Self {
-            rows: batches.iter().map(RecordBatch::num_rows).sum(),
-            schema,
-            batches,
-        }
-    }
-
     /// One array of a column: the batches' memory, one after the other.
-    fn gathered<T: Copy>(&self, of: impl Fn(&RecordBatch) -> Option<&[T]>) -> Vec<T> {
-        let mut all = Vec::with_capacity(self.rows);
-        for batch in &self.batches {
-            all.extend_from_slice(of(batch).unwrap_or_default());
-        }
-        all
-    }
-
-    fn column<'py, T: Element + Copy>(
-        &self,
-        py: Python<'py>,
-        of: impl Fn(&RecordBatch) -> Option<&[T]> + Send + Sync,
-    ) -> Bound<'py, PyAny> {
-        let values = py.detach(|| self.gathered(of));
+    fn column<'py, T>(&self, py: Python<'py>, name: &str) -> Bound<'py, PyAny>
+    where
+        T: ArrowPrimitiveType<Native: Element>,
+    {
+        let values = py.detach(|| {
+            let mut all = Vec::with_capacity(self.__len__());
+            for batch in &self.batches {
+                all.extend_from_slice(batch[name].as_primitive::<T>().values());
+            }
+            all
+        });
         values.into_pyarray(py).into_any()
     }
 }
@@ -114,7 +93,7 @@ impl Rows {
 #[pymethods]
 impl Rows {
     fn __len__(&self) -> usize {
-        self.rows
+        self.batches.iter().map(RecordBatch::num_rows).sum()
     }
 
     /// Names of the columns, in order.
@@ -132,8 +111,11 @@ impl Rows {
     ) -> PyResult<Bound<'py, PyCapsule>> {
         // The protocol lets a producer that cannot cast ignore it.
         let _ = requested_schema;
+        let schema = record_batch(FragmentBatch::default())
+            .map_err(raised)?
+            .schema();
         let batches = self.batches.clone().into_iter().map(Ok);
-        let reader = RecordBatchIterator::new(batches, Arc::clone(&self.schema));
+        let reader = RecordBatchIterator::new(batches, schema);
         let stream = FFI_ArrowArrayStream::new(Box::new(reader));
         PyCapsule::new_with_value(py, stream, c"arrow_array_stream")
     }
@@ -164,14 +146,8 @@ impl Rows {
         for column in chosen {
             let name = column.name();
             let array = match column.kind() {
-                ColumnKind::F32 => self.column(py, |b| {
-                    let array = b.column_by_name(name)?.as_any();
-                    Some(array.downcast_ref::<Float32Array>()?.values().as_ref())
-                }),
-                ColumnKind::U32 => self.column(py, |b| {
-                    let array = b.column_by_name(name)?.as_any();
-                    Some(array.downcast_ref::<UInt32Array>()?.values().as_ref())
-                }),
+                ColumnKind::F32 => self.column::<Float32Type>(py, name),
+                ColumnKind::U32 => self.column::<UInt32Type>(py, name),
             };
             arrays.set_item(name, array)?;
         }
@@ -181,7 +157,7 @@ impl Rows {
     fn __repr__(&self) -> String {
         format!(
             "Rows({} rows, {} columns)",
-            thousands(self.rows as u64),
+            thousands(self.__len__() as u64),
             Column::ALL.len()
         )
     }
@@ -247,19 +223,14 @@ impl Dataset {
         watch(
             py,
             |stop, _: &Reporter<()>| {
-                let schema = schema();
-                let mut batches = Vec::new();
-                for batch in self.dataset.batches(BATCH_ROWS) {
-                    if stop.load(Ordering::Relaxed) {
-                        break;
-                    }
-                    let batch = record_batch(&schema, batch.map_err(raised)?);
-                    batches.push(batch.map_err(|e| failed(e.to_string()))?);
-                }
-                Ok(Rows::new(schema, batches))
+                let batches = self.dataset.batches(BATCH_ROWS);
+                let batches = batches.take_while(|_| !stop.load(Ordering::Relaxed));
+                let batches = batches.map(|batch| record_batch(batch?));
+                let batches = batches.collect::<Result<_, Failure>>()?;
+                Ok::<_, Failure>(Rows { batches })
             },
             |_, ()| Ok(()),
-        )?
+        )
     }
 
     fn __repr__(&self) -> String {
@@ -271,25 +242,16 @@ impl Dataset {
 /// Rows of a batch that is read from a folder.
 const BATCH_ROWS: usize = 1 << 18;
 
-fn show(bar: &mut Bar<'_>, progress: Progress) -> PyResult<()> {
-    let (done, total) = (progress.items_done, progress.items);
-    bar.set(done.into(), total.into(), &progress.text())
-}
-
 fn in_memory(
     gpu: &Gpu,
     scenes: &[peelnet::Scene],
     options: &ExtractOptions,
     stop: &AtomicBool,
     reporter: &Reporter<Progress>,
-) -> PyResult<Rows> {
+) -> Result<Rows, Failure> {
     let start = Instant::now();
-    let all = items::items(scenes, options).map_err(raised)?;
-    let all = all.iter().map(|item| item.index);
-    let mine: Vec<u32> = all
-        .filter(|&i| options.shard.is_none_or(|s| s.contains(i)))
-        .collect();
-    let schema = schema();
+    let mut mine = items::items(scenes, options)?;
+    mine.retain(|item| options.shard.is_none_or(|s| s.contains(item.index)));
     let (mut batches, mut rows) = (Vec::new(), 0);
     let say = |done: usize, rows: u64| {
         reporter.say(Progress {
@@ -299,19 +261,18 @@ fn in_memory(
             seconds: start.elapsed().as_secs_f64(),
         });
     };
-    for batch in extract::batches(gpu, scenes, options).map_err(raised)? {
+    for batch in extract::batches(gpu, scenes, options)? {
         if stop.load(Ordering::Relaxed) {
-            return Err(raised(PeelError::Interrupted));
+            return Err(PeelError::Interrupted.into());
         }
-        let batch = batch.map_err(raised)?;
+        let batch = batch?;
         rows += batch.len() as u64;
         let view = batch.view.first().copied().unwrap_or(0);
-        say(mine.partition_point(|&i| i < view), rows);
-        let batch = record_batch(&schema, batch).map_err(|e| failed(e.to_string()))?;
-        batches.push(batch);
+        say(mine.partition_point(|item| item.index < view), rows);
+        batches.push(record_batch(batch)?);
     }
     say(mine.len(), rows);
-    Ok(Rows::new(schema, batches))
+    Ok(Rows { batches })
 }
 
 enum Done {
@@ -345,7 +306,7 @@ enum Done {
 #[allow(clippy::too_many_arguments, reason = "keyword arguments of Python")]
 pub fn extract_rows<'py>(
     py: Python<'py>,
-    scenes: Arguments<Scene>,
+    scenes: &Bound<'py, PyAny>,
     out: Option<PathBuf>,
     size: (u32, u32),
     views: Option<u32>,
@@ -383,7 +344,7 @@ pub fn extract_rows<'py>(
         command: "peelnet.extract of the Python package".to_owned(),
         ..ExtractOptions::new(out.clone().unwrap_or_default())
     };
-    let scenes = loaded(scenes, py)?;
+    let scenes = loaded(scenes)?;
     let gpu = gpu::open(py, adapter)?;
     let mut bar = Bar::new(progress)?;
     let result = watch(
@@ -393,13 +354,14 @@ pub fn extract_rows<'py>(
                 return in_memory(&gpu, &scenes, &options, stop, reporter).map(Done::Rows);
             }
             let mut say = |p: &Progress| reporter.say(*p);
-            let report = extract::extract(&gpu, &scenes, &options, stop, &mut say);
-            let report = report.map_err(raised)?;
+            let report = extract::extract(&gpu, &scenes, &options, stop, &mut say)?;
             Ok(Done::Folder(Box::new(report)))
         },
-        |_, progress| show(&mut bar, progress),
-    )
-    .and_then(|result| result);
+        |_, progress| {
+            let (done, total) = (progress.items_done, progress.items);
+            bar.set(done.into(), total.into(), &progress.text())
+        },
+    );
     match bar.close(result)? {
         Done::Rows(rows) => Ok(Bound::new(py, rows)?.into_any()),
         Done::Folder(report) => {

@@ -1,7 +1,7 @@
 //! Scenes and cameras.
 
 use crate::{
-    argument::{Arguments, FromFile},
+    argument::{FromFile, load_all},
     failure::{raised, warn, wrong},
 };
 use peelnet::scene::suite;
@@ -14,48 +14,8 @@ use std::{
 };
 
 /// A perspective camera. Lengths are in scene units, `fov_y_degrees` is the vertical field of view.
-#[pyclass(frozen, module = "peelnet", get_all)]
-#[derive(Clone, Copy)]
-pub struct Camera {
-    /// Eye (x, y, z), scene units.
-    position: (f32, f32, f32),
-    /// Point looked at (x, y, z), scene units.
-    target: (f32, f32, f32),
-    /// Up direction (x, y, z), any length.
-    up: (f32, f32, f32),
-    /// Vertical field of view, degrees.
-    fov_y_degrees: f32,
-    /// Near clip distance, scene units.
-    near: f32,
-    /// Far clip distance, scene units.
-    far: f32,
-}
-
-impl From<peelnet::Camera> for Camera {
-    fn from(c: peelnet::Camera) -> Self {
-        Self {
-            position: c.position.into(),
-            target: c.target.into(),
-            up: c.up.into(),
-            fov_y_degrees: c.fov_y_degrees,
-            near: c.near,
-            far: c.far,
-        }
-    }
-}
-
-impl From<Camera> for peelnet::Camera {
-    fn from(c: Camera) -> Self {
-        Self {
-            position: c.position.into(),
-            target: c.target.into(),
-            up: c.up.into(),
-            fov_y_degrees: c.fov_y_degrees,
-            near: c.near,
-            far: c.far,
-        }
-    }
-}
+#[pyclass(frozen, module = "peelnet")]
+pub struct Camera(pub peelnet::Camera);
 
 #[pymethods]
 impl Camera {
@@ -85,23 +45,59 @@ impl Camera {
                 "position, target and up must be finite, and position other than target",
             ));
         }
-        Ok(Self {
+        Ok(Self(peelnet::Camera {
             position: position.into(),
             target: target.into(),
             up: up.into(),
             fov_y_degrees,
             near,
             far,
-        })
+        }))
+    }
+
+    /// Eye (x, y, z), scene units.
+    #[getter]
+    fn position(&self) -> (f32, f32, f32) {
+        self.0.position.into()
+    }
+
+    /// Point looked at (x, y, z), scene units.
+    #[getter]
+    fn target(&self) -> (f32, f32, f32) {
+        self.0.target.into()
+    }
+
+    /// Up direction (x, y, z), any length.
+    #[getter]
+    fn up(&self) -> (f32, f32, f32) {
+        self.0.up.into()
+    }
+
+    /// Vertical field of view, degrees.
+    #[getter]
+    fn fov_y_degrees(&self) -> f32 {
+        self.0.fov_y_degrees
+    }
+
+    /// Near clip distance, scene units.
+    #[getter]
+    fn near(&self) -> f32 {
+        self.0.near
+    }
+
+    /// Far clip distance, scene units.
+    #[getter]
+    fn far(&self) -> f32 {
+        self.0.far
     }
 
     /// This camera, turned about `up` through its target by an angle in degrees.
     fn orbited(&self, degrees: f32) -> Self {
-        peelnet::Camera::from(*self).orbited(degrees).into()
+        Self(self.0.orbited(degrees))
     }
 
     fn __repr__(&self) -> String {
-        let c = peelnet::Camera::from(*self);
+        let c = &self.0;
         format!(
             "Camera({}, {}, up={}, fov_y_degrees={}, near={}, far={})",
             c.position, c.target, c.up, c.fov_y_degrees, c.near, c.far
@@ -208,7 +204,7 @@ impl Scene {
     /// The cameras of the scene's views.
     #[getter]
     fn views(&self) -> Vec<Camera> {
-        self.scene.views.iter().map(|&c| c.into()).collect()
+        self.scene.views.iter().copied().map(Camera).collect()
     }
 
     /// Number of triangles.
@@ -260,11 +256,8 @@ impl FromFile for Scene {
 }
 
 /// The scenes of an argument.
-///
-/// # Errors
-/// The first that does not load.
-pub fn loaded(scenes: Arguments<Scene>, py: Python<'_>) -> PyResult<Vec<peelnet::Scene>> {
-    let scenes = scenes.load(py)?.into_iter();
+pub fn loaded(scenes: &Bound<'_, PyAny>) -> PyResult<Vec<peelnet::Scene>> {
+    let scenes = load_all::<Scene>(scenes)?.into_iter();
     Ok(scenes.map(|s| Arc::unwrap_or_clone(s.scene)).collect())
 }
 

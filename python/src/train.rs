@@ -1,7 +1,7 @@
 //! Training, with a callback each epoch.
 
 use crate::{
-    argument::Arguments,
+    argument::load_all,
     failure::{raised, wrong},
     model::{Model, NO_INPUTS},
     rows::Dataset,
@@ -119,7 +119,7 @@ impl Training {
 #[allow(clippy::too_many_arguments, reason = "keyword arguments of Python")]
 pub fn train<'py>(
     py: Python<'py>,
-    data: Arguments<Dataset>,
+    data: &Bound<'py, PyAny>,
     recipe: &str,
     out: Option<PathBuf>,
     epochs: Option<u32>,
@@ -167,7 +167,7 @@ pub fn train<'py>(
     let names = ["out", "loss_curve", "resume"];
     let place = ModelPlace::new(out.as_deref(), resume, &loss_curve, &mut outputs, names);
     let place = place.map_err(raised)?;
-    let datasets = data.load(py)?.into_iter();
+    let datasets = load_all::<Dataset>(data)?.into_iter();
     let datasets: Vec<_> = datasets.map(|d| d.dataset).collect();
     let mut bar = Bar::new(progress)?;
     let result = watch(
@@ -194,8 +194,7 @@ pub fn train<'py>(
                 None => Ok(()),
             }
         },
-    )
-    .and_then(|result| result.map_err(raised));
+    );
     let outcome = bar.close(result)?;
     place.deliver(&outcome.model).map_err(raised)?;
     Ok(Training {

@@ -1,5 +1,7 @@
 //! Long work on a thread of its own, while Python's thread hears Ctrl-C and shows progress.
 
+use crate::failure::raised;
+use peelnet::Failure;
 use pyo3::{exceptions::PyTypeError, prelude::*, types::PyBool};
 use std::{
     sync::{
@@ -37,10 +39,10 @@ impl<E> Reporter<E> {
 /// Runs `work` without the GIL. Its events reach `on` with the GIL, in order. An exception of `on` and Ctrl-C set the flag that `work` looks at.
 ///
 /// # Errors
-/// The first exception of `on` or of a signal handler, once the work has ended.
-pub fn watch<E: Send, T: Send>(
+/// The first exception of `on` or of a signal handler, once the work has ended; else what the work came to.
+pub fn watch<E: Send, T: Send, F: Into<Failure> + Send>(
     py: Python<'_>,
-    work: impl FnOnce(&AtomicBool, &Reporter<E>) -> T + Send,
+    work: impl FnOnce(&AtomicBool, &Reporter<E>) -> Result<T, F> + Send,
     mut on: impl FnMut(Python<'_>, E) -> PyResult<()>,
 ) -> PyResult<T> {
     let stop = AtomicBool::new(false);
@@ -71,7 +73,8 @@ pub fn watch<E: Send, T: Send>(
         let result = worker
             .join()
             .unwrap_or_else(|panic| std::panic::resume_unwind(panic));
-        heard.and_then(|()| py.check_signals()).map(|()| result)
+        heard.and_then(|()| py.check_signals())?;
+        result.map_err(raised)
     })
 }
 
@@ -79,14 +82,10 @@ pub fn watch<E: Send, T: Send>(
 pub struct Bar<'py> {
     bar: Option<Bound<'py, PyAny>>,
     done: u64,
-    total: Option<u64>,
 }
 
 impl<'py> Bar<'py> {
     /// Of `progress=`: nothing, `True` for tqdm's own, or an object with `update`.
-    ///
-    /// # Errors
-    /// An object without `update`, or `True` without tqdm.
     pub fn new(progress: Option<Bound<'py, PyAny>>) -> PyResult<Self> {
         let bar = match progress {
             Some(p) if p.is_instance_of::<PyBool>() => match p.extract()? {
@@ -102,25 +101,15 @@ impl<'py> Bar<'py> {
                 "progress needs update(n), total and close(), as tqdm has them",
             ));
         }
-        Ok(Self {
-            bar,
-            done: 0,
-            total: None,
-        })
+        Ok(Self { bar, done: 0 })
     }
 
     /// Moves the bar to `done` of `total`, with a text where the bar shows one.
-    ///
-    /// # Errors
-    /// What the bar raises.
     pub fn set(&mut self, done: u64, total: u64, text: &str) -> PyResult<()> {
         let Some(bar) = &self.bar else {
             return Ok(());
         };
-        if self.total != Some(total) {
-            bar.setattr("total", total)?;
-            self.total = Some(total);
-        }
+        bar.setattr("total", total)?;
         if !text.is_empty() && bar.hasattr("set_postfix_str")? {
             bar.call_method1("set_postfix_str", (peelnet_files::one_line(text), false))?;
         }
@@ -129,10 +118,7 @@ impl<'py> Bar<'py> {
         Ok(())
     }
 
-    /// Ends the bar, whatever the work came to.
-    ///
-    /// # Errors
-    /// The work's, else the bar's.
+    /// Ends the bar, whatever the work came to; the work's error, else the bar's.
     pub fn close<T>(self, result: PyResult<T>) -> PyResult<T> {
         let Some(bar) = self.bar else {
             return result;

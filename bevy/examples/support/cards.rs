@@ -11,7 +11,6 @@ pub struct Card {
     pub color: LinearRgba,
 }
 
-/// What is behind all cards.
 pub const BACKGROUND: LinearRgba = LinearRgba::new(0.25, 0.5, 0.75, 1.0);
 
 /// Where the camera of all scenes stands. It looks at the origin.
@@ -50,11 +49,8 @@ pub fn crossing() -> Vec<Card> {
 /// Many cards of any size, opacity and direction, that cut one another, around an opaque one.
 pub fn many(count: usize) -> Vec<Card> {
     let mut random = Random(1);
-    let opaque = {
-        let mut card = card([0.3, -0.2, 0.0], [0.8, 2.6], [0.9, 0.8, 0.1, 1.0]);
-        card.transform.rotation = Quat::from_rotation_y(0.3);
-        card
-    };
+    let mut opaque = card([0.3, -0.2, 0.0], [0.8, 2.6], [0.9, 0.8, 0.1, 1.0]);
+    opaque.transform.rotation = Quat::from_rotation_y(0.3);
     let transparent = (0..count).map(|_| {
         let mut one = || random.next();
         let at = [one() * 3.0 - 1.5, one() * 3.0 - 1.5, one() * 4.0 - 2.0];
@@ -87,7 +83,6 @@ impl Random {
     }
 }
 
-/// The material of a card.
 pub fn material(color: LinearRgba) -> StandardMaterial {
     StandardMaterial {
         base_color: color.into(),
@@ -103,22 +98,19 @@ pub fn material(color: LinearRgba) -> StandardMaterial {
     }
 }
 
+/// Adds a card of a material to an application.
+pub fn spawn_of<M: Material>(app: &mut App, card: &Card, material: M) -> Entity {
+    let world = app.world_mut();
+    let mesh = Rectangle::new(1.0, 1.0);
+    let mesh = world.resource_mut::<Assets<Mesh>>().add(mesh);
+    let material = world.resource_mut::<Assets<M>>().add(material);
+    let parts = (Mesh3d(mesh), MeshMaterial3d(material), card.transform);
+    world.spawn(parts).id()
+}
+
 /// Adds cards to an application, and says their entities.
 pub fn spawn(app: &mut App, cards: &[Card]) -> Vec<Entity> {
-    let world = app.world_mut();
-    let mesh = world
-        .resource_mut::<Assets<Mesh>>()
-        .add(Rectangle::new(1.0, 1.0));
-    let spawn = |card: &Card| {
-        let material = world
-            .resource_mut::<Assets<StandardMaterial>>()
-            .add(material(card.color));
-        let parts = (
-            Mesh3d(mesh.clone()),
-            MeshMaterial3d(material),
-            card.transform,
-        );
-        world.spawn(parts).id()
-    };
-    cards.iter().map(spawn).collect()
+    let cards = cards.iter();
+    let spawned = cards.map(|card| spawn_of(app, card, material(card.color)));
+    spawned.collect()
 }

@@ -33,8 +33,8 @@ pub struct Errors {
 }
 
 /// Where the samples of a pixel lie, as Vulkan and Direct3D have them.
-pub fn samples(count: u32) -> Vec<DVec2> {
-    let places: &[[f64; 2]] = match count {
+fn places_of(count: u32) -> &'static [[f64; 2]] {
+    match count {
         1 => &[[0.5, 0.5]],
         4 => &[
             [0.375, 0.125],
@@ -43,26 +43,20 @@ pub fn samples(count: u32) -> Vec<DVec2> {
             [0.625, 0.875],
         ],
         _ => panic!("{count} samples have no places here"),
-    };
-    places.iter().map(|&place| place.into()).collect()
+    }
 }
 
-/// A card as rays see it.
-struct Plane {
-    local_from_world: DMat4,
-    color: [f64; 4],
-}
+/// A card as rays see it: `local_from_world`, and its colour and opacity.
+type Plane = (DMat4, DVec4);
 
 /// The image of cards at a size, with so many samples a pixel.
 pub fn picture(cards: &[Card], size: UVec2, sample_count: u32) -> Exact {
-    let planes: Vec<Plane> = cards
-        .iter()
-        .map(|card| Plane {
-            local_from_world: card.transform.to_matrix().as_dmat4().inverse(),
-            color: channels_of(card.color),
-        })
-        .collect();
-    let places = samples(sample_count);
+    let planes = cards.iter().map(|card| {
+        let local_from_world = card.transform.to_matrix().as_dmat4().inverse();
+        (local_from_world, card.color.to_vec4().as_dvec4())
+    });
+    let planes: Vec<Plane> = planes.collect();
+    let places = places_of(sample_count);
     let mut exact = Exact {
         pixels: Vec::new(),
         certain: Vec::new(),
@@ -72,17 +66,13 @@ pub fn picture(cards: &[Card], size: UVec2, sample_count: u32) -> Exact {
             let corner = DVec2::new(x.into(), y.into());
             let mut sum = DVec3::ZERO;
             let mut certain = true;
-            for &place in &places {
-                let hits = hits_at(&planes, corner + place, size);
+            for &place in places {
+                let point = corner + DVec2::from(place);
+                let hits = hits_at(&planes, point, size);
                 sum += composited(&planes, &hits);
-                let margin = DVec2::splat(MARGIN);
-                for away in [
-                    margin,
-                    -margin,
-                    margin * DVec2::new(1.0, -1.0),
-                    margin * DVec2::new(-1.0, 1.0),
-                ] {
-                    certain &= same_order(&hits, &hits_at(&planes, corner + place + away, size));
+                for away in [[1.0, 1.0], [-1.0, -1.0], [1.0, -1.0], [-1.0, 1.0]] {
+                    let beside = point + MARGIN * DVec2::from(away);
+                    certain &= hits == hits_at(&planes, beside, size);
                 }
             }
             let mean = sum / places.len() as f64;
@@ -95,17 +85,17 @@ pub fn picture(cards: &[Card], size: UVec2, sample_count: u32) -> Exact {
     exact
 }
 
-/// Which cards the ray through a point of the image meets, and where, front to back.
-fn hits_at(planes: &[Plane], point: DVec2, size: UVec2) -> Vec<(f64, usize)> {
+/// Which cards the ray through a point of the image meets, front to back.
+fn hits_at(planes: &[Plane], point: DVec2, size: UVec2) -> Vec<usize> {
     let size = size.as_dvec2();
     let half = (FIELD_OF_VIEW * 0.5).tan();
     let from_middle = (point / size * 2.0 - 1.0) * DVec2::new(half * size.x / size.y, -half);
     // Its length along the view's axis is 1, so that hits are distances along that axis.
     let direction = from_middle.extend(-1.0);
     let mut hits = Vec::new();
-    for (index, plane) in planes.iter().enumerate() {
-        let from: DVec4 = plane.local_from_world * EYE.as_dvec3().extend(1.0);
-        let along = plane.local_from_world * direction.extend(0.0);
+    for (index, (local_from_world, _)) in planes.iter().enumerate() {
+        let from = *local_from_world * EYE.as_dvec3().extend(1.0);
+        let along = *local_from_world * direction.extend(0.0);
         let distance = -from.z / along.z;
         let at = from + along * distance;
         if distance > 0.1 && at.x.abs() <= 0.5 && at.y.abs() <= 0.5 {
@@ -113,27 +103,18 @@ fn hits_at(planes: &[Plane], point: DVec2, size: UVec2) -> Vec<(f64, usize)> {
         }
     }
     hits.sort_by(|a, b| a.0.total_cmp(&b.0));
-    hits
+    hits.into_iter().map(|(_, index)| index).collect()
 }
 
-fn same_order(a: &[(f64, usize)], b: &[(f64, usize)]) -> bool {
-    a.iter().map(|hit| hit.1).eq(b.iter().map(|hit| hit.1))
-}
-
-fn composited(planes: &[Plane], hits: &[(f64, usize)]) -> DVec3 {
+fn composited(planes: &[Plane], hits: &[usize]) -> DVec3 {
     let mut color = DVec3::ZERO;
     let mut transmittance = 1.0;
-    for &(_, index) in hits {
-        let [red, green, blue, alpha] = planes[index].color;
-        color += transmittance * alpha * DVec3::new(red, green, blue);
-        transmittance *= 1.0 - alpha;
+    for &index in hits {
+        let (_, layer) = planes[index];
+        color += transmittance * layer.w * layer.truncate();
+        transmittance *= 1.0 - layer.w;
     }
-    let [red, green, blue, _] = channels_of(BACKGROUND);
-    color + transmittance * DVec3::new(red, green, blue)
-}
-
-fn channels_of(color: LinearRgba) -> [f64; 4] {
-    [color.red, color.green, color.blue, color.alpha].map(f64::from)
+    color + transmittance * BACKGROUND.to_vec3().as_dvec3()
 }
 
 /// The sRGB curve.
@@ -170,7 +151,6 @@ impl Exact {
         }
     }
 
-    /// As a picture of four bytes a pixel.
     pub fn bytes(&self) -> Vec<u8> {
         let bytes = |pixel: &[f64; 3]| {
             let [red, green, blue] = pixel.map(|v| (v + 0.5) as u8);

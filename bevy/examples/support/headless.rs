@@ -30,7 +30,6 @@ const FRAMES_TO_READ: u32 = 100;
 
 static LOGGED: AtomicBool = AtomicBool::new(false);
 
-/// The application, its camera and its image.
 pub struct Headless {
     pub app: App,
     pub camera: Entity,
@@ -104,13 +103,11 @@ impl Headless {
         }
     }
 
-    /// The same with learned transparency.
     pub fn learned(mut self) -> Self {
         self.camera().insert(LearnedTransparency::default());
         self
     }
 
-    /// Without learned transparency.
     pub fn sort(&mut self) {
         self.camera().remove::<LearnedTransparency>();
     }
@@ -125,13 +122,12 @@ impl Headless {
         errors
     }
 
-    /// What the plugin reported.
     pub fn messages(&self) -> Vec<(Gravity, String)> {
         self.app.world().resource::<PeelnetMessages>().all()
     }
 
-    /// Plugins are ready only then. Call it after the last plugin is added.
-    fn start(&mut self) {
+    /// Draws frames. Plugins are made ready first: the last one is added by now.
+    pub fn run(&mut self, frames: u32) {
         while self.app.plugins_state() == PluginsState::Adding {
             bevy::tasks::tick_global_task_pools_on_main_thread();
         }
@@ -139,11 +135,6 @@ impl Headless {
             self.app.finish();
             self.app.cleanup();
         }
-    }
-
-    /// Draws frames.
-    pub fn run(&mut self, frames: u32) {
-        self.start();
         for _ in 0..frames {
             self.app.update();
         }
@@ -176,7 +167,6 @@ impl Headless {
         panic!("the image was not read back within {FRAMES_TO_READ} frames");
     }
 
-    /// The camera's entity, to add and remove techniques.
     pub fn camera(&mut self) -> EntityWorldMut<'_> {
         self.app.world_mut().entity_mut(self.camera)
     }

@@ -27,7 +27,6 @@ use std::{path::PathBuf, time::Duration};
 
 /// How long the view rests before errors are measured, seconds.
 const REST: f64 = 0.15;
-/// Scenes that are remembered.
 const MOST_RECENT: usize = 10;
 
 /// What the window begins with.
@@ -37,15 +36,11 @@ pub struct Start {
     pub scene: PathBuf,
     /// The same scene where it is loaded already, at `time`.
     pub loaded: Option<Scene>,
-    /// The method.
     pub method: MethodSpec,
-    /// A network for it, read again whenever its file changes.
     pub model: Option<PathBuf>,
-    /// The number of the scene's view.
     pub view: usize,
     /// Eye, target and field of view in place of the view's own, see [`crate::camera_numbers`].
     pub camera: Option<Vec<f32>>,
-    /// The time of the scene's timeline.
     pub time: Option<f32>,
     /// How pictures are compared at first.
     pub compare: Mode,
@@ -53,12 +48,10 @@ pub struct Start {
     pub against: Option<MethodSpec>,
     /// Whether the picture alone is shown, without panels.
     pub bare: bool,
-    /// What a script asks for.
     pub script: Option<Script>,
 }
 
 impl Start {
-    /// A scene with a method, view 0.
     pub fn new(scene: impl Into<PathBuf>, method: MethodSpec) -> Self {
         Self {
             scene: scene.into(),
@@ -89,7 +82,6 @@ pub(crate) fn configuration(gpu: &Gpu) -> WgpuConfiguration {
     }
 }
 
-/// The viewer.
 pub(crate) struct App {
     pub gpu: Gpu,
     pub stage: Option<Stage>,
@@ -108,7 +100,6 @@ pub(crate) struct App {
     pub watch: Watch,
     pub recent: Vec<PathBuf>,
     pub panels: panels::State,
-    /// Size of the picture, pixels.
     pub size: [u32; 2],
     script: Option<Script>,
     pub display: Display,
@@ -123,32 +114,9 @@ pub(crate) struct App {
 
 impl App {
     /// Opens a scene from a source, whatever `start` names; what does not open is a message in the window.
-    pub fn new(gpu: &Gpu, mut start: Start, source: Source, recent: Vec<PathBuf>) -> Self {
-        let (loaded, model) = (start.loaded.take(), start.model.take());
-        let (camera, view, time) = (start.camera.take(), start.view, start.time);
-        let mut app = Self::empty(gpu, start, recent);
-        match loaded {
-            Some(scene) => app.take(Stage::of_scene(gpu, source, scene)),
-            None => app.open(source, time),
-        }
-        app.show_view(view);
-        if let Some(numbers) = camera.filter(|numbers| numbers.len() >= 6) {
-            app.move_eye(|camera, _| {
-                camera.position = Vec3::from_slice(&numbers);
-                camera.target = Vec3::from_slice(&numbers[3..]);
-                camera.fov_y_degrees = *numbers.get(6).unwrap_or(&camera.fov_y_degrees);
-            });
-        }
-        if let Some(path) = model {
-            app.open_network(Source::named(path));
-        }
-        app
-    }
-
-    /// Without a scene.
-    pub fn empty(gpu: &Gpu, start: Start, recent: Vec<PathBuf>) -> Self {
+    pub fn new(gpu: &Gpu, start: Start, source: Source, recent: Vec<PathBuf>) -> Self {
         let against = start.against.or_else(|| EXACT.parse().ok());
-        Self {
+        let mut app = Self {
             gpu: gpu.clone(),
             stage: None,
             camera: Camera {
@@ -162,7 +130,11 @@ impl App {
             view: None,
             second: Slot::new(against.unwrap_or_else(|| start.method.clone())),
             first: Slot::new(start.method),
-            compare: Compare::new(start.compare),
+            compare: Compare {
+                mode: start.compare,
+                divider: 0.5,
+                scale: 16.0,
+            },
             judge: Judge::default(),
             counter: LayerCounter::default(),
             inspector: Inspector::default(),
@@ -180,7 +152,23 @@ impl App {
             cpu_ms: 0.0,
             #[cfg(target_arch = "wasm32")]
             page: crate::web::InPage::default(),
+        };
+        match start.loaded {
+            Some(scene) => app.take(Stage::of_scene(gpu, source, scene)),
+            None => app.open(source, start.time),
         }
+        app.show_view(start.view);
+        if let Some(numbers) = start.camera.filter(|numbers| numbers.len() >= 6) {
+            app.move_eye(|camera, _| {
+                camera.position = Vec3::from_slice(&numbers);
+                camera.target = Vec3::from_slice(&numbers[3..]);
+                camera.fov_y_degrees = *numbers.get(6).unwrap_or(&camera.fov_y_degrees);
+            });
+        }
+        if let Some(path) = start.model {
+            app.open_network(Source::named(path));
+        }
+        app
     }
 
     /// Replaces the scene; the one that is shown stays where the new one does not open.
@@ -210,7 +198,6 @@ impl App {
         self.show_view(0);
     }
 
-    /// Looks through one of the scene's cameras.
     pub fn show_view(&mut self, number: usize) {
         let Some(stage) = &self.stage else { return };
         match stage.scene.views.get(number) {
@@ -251,7 +238,6 @@ impl App {
             .follow(Some(source.path).filter(|_| source.dropped.is_none()));
     }
 
-    /// Changes the scene; a failure is a message.
     pub fn edit(&mut self, change: impl FnOnce(&mut Stage) -> Fallible<()>) {
         // Measurements hold the scene: what they measure is not there any more.
         self.cancel();
@@ -270,8 +256,11 @@ impl App {
 
     /// What identifies the picture.
     pub fn key(&self) -> Option<Key> {
-        let stage = self.stage.as_ref()?;
-        Some(Key::of(stage.view(self.camera, self.size), &self.first))
+        Some(Key {
+            view: self.stage.as_ref()?.view(self.camera, self.size),
+            method: self.first.spec.to_string(),
+            network: self.first.own_network().map(|n| n.number),
+        })
     }
 
     fn poll(&mut self, ui: &Context) {
@@ -308,7 +297,7 @@ impl App {
         if self.page.is_drawing(ui) {
             return self.display.texture();
         }
-        let always = self.script.as_ref().is_some_and(Script::draws_always);
+        let always = self.script.as_ref().is_some_and(|script| !script.asked);
         let stage = self.stage.as_ref()?;
         let mode = self.compare.mode_at(ui);
         let half = [size[0].div_ceil(2), size[1]];
@@ -368,7 +357,6 @@ impl App {
         self.display.texture()
     }
 
-    /// Measures what is shown once it rests.
     fn measure(&mut self, ui: &Context) {
         let Some(key) = self.key().filter(|_| self.size != [0; 2]) else {
             return;
@@ -389,7 +377,6 @@ impl App {
         }
     }
 
-    /// One frame of the window.
     pub fn frame(&mut self, ui: &mut egui::Ui, egui: &RenderState) {
         let begin = web_time::Instant::now();
         let ctx = ui.ctx().clone();
@@ -423,7 +410,7 @@ impl eframe::App for App {
     }
 
     fn save(&mut self, storage: &mut dyn eframe::Storage) {
-        memory::save(storage, &self.recent);
+        storage.set_string(memory::RECENT, memory::text(&self.recent));
     }
 
     #[cfg(target_arch = "wasm32")]

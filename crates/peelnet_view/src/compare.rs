@@ -1,24 +1,18 @@
 //! How one or two pictures are shown.
 
-/// Seconds that each of two pictures is seen.
 const FLICKER: f64 = 0.5;
 
 /// What the viewport shows; the numbers of `display.wgsl`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(u32)]
 pub enum Mode {
-    /// The method alone.
     #[default]
     One = 0,
     /// In place of [`Mode::Flicker`] while the second picture's turn lasts.
     Second = 1,
-    /// Both methods, divided by a line.
     Split = 2,
-    /// Both methods side by side.
     Beside = 3,
-    /// A map of their differences.
     Error = 4,
-    /// A map of the number of transparent surfaces.
     Layers = 5,
     /// Both methods in turn; while the first picture's turn lasts, that one.
     Flicker = 6,
@@ -59,7 +53,6 @@ impl Mode {
     }
 }
 
-/// The choice, and its numbers.
 #[derive(Clone, Copy)]
 pub(crate) struct Compare {
     pub mode: Mode,
@@ -70,14 +63,6 @@ pub(crate) struct Compare {
 }
 
 impl Compare {
-    pub const fn new(mode: Mode) -> Self {
-        Self {
-            mode,
-            divider: 0.5,
-            scale: 16.0,
-        }
-    }
-
     /// The mode at this moment: flickering takes turns.
     pub fn mode_at(&self, ui: &egui::Context) -> Mode {
         if self.mode != Mode::Flicker {

@@ -13,7 +13,6 @@ const SHOWN: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 #[repr(C)]
 #[derive(Clone, Copy, Pod, Zeroable, PartialEq)]
 pub(crate) struct View {
-    /// A [`crate::Mode`].
     pub show: u32,
     pub divider: u32,
     pub scale: f32,
@@ -36,12 +35,10 @@ impl Display {
         }
     }
 
-    /// The texture, once something was drawn.
     pub fn texture(&self) -> Option<egui::TextureId> {
         self.target.as_ref().map(|(_, id)| *id)
     }
 
-    /// The texture's texels, four bytes each.
     #[cfg(test)]
     pub fn texels(&self, gpu: &Gpu) -> Vec<[u8; 4]> {
         let (view, _) = self.target.as_ref().expect("something was drawn");

@@ -12,7 +12,6 @@ const CLOSEST: f32 = 1e-3;
 /// Largest distance of eye and target in radii of the scene.
 const FARTHEST: f32 = 1e3;
 
-/// A sphere around all objects.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Sphere {
     pub middle: Vec3,
@@ -75,7 +74,6 @@ pub(crate) fn pan(camera: &mut Camera, right: f32, down: f32) {
     camera.target += step;
 }
 
-/// Multiplies the distance of eye and target.
 pub(crate) fn zoom(camera: &mut Camera, factor: f32, all: Sphere) {
     let away = camera.position - camera.target;
     let distance = (away.length() * factor).clamp(CLOSEST * all.radius, FARTHEST * all.radius);
@@ -100,7 +98,6 @@ pub(crate) fn fit(camera: &mut Camera, all: Sphere, aspect: f32) {
     camera.position = all.middle + back * (all.radius / half.sin());
 }
 
-/// Puts near and far around all objects.
 pub(crate) fn set_planes(camera: &mut Camera, all: Sphere) {
     let forward = -axes(camera).z_axis;
     let middle = (all.middle - camera.position).dot(forward);

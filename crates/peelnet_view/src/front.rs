@@ -1,7 +1,7 @@
 //! Error against time of all methods on the present view.
 
 use crate::{
-    numbers::{EXACT, Key},
+    numbers::EXACT,
     slot::Shot,
     stage::{Stage, View},
     task::{Fallible, Job, computed, one_line},
@@ -13,7 +13,6 @@ use std::{cell::RefCell, rc::Rc, sync::Arc};
 /// Frames that are timed of each method; the median counts, the first is a warm-up.
 const FRAMES: usize = 4;
 
-/// A method on the view.
 #[derive(Clone)]
 pub(crate) struct Point {
     pub method: String,
@@ -26,14 +25,12 @@ pub(crate) struct Point {
     pub on_front: bool,
 }
 
-/// What is known so far.
 #[derive(Default)]
 pub(crate) struct Measured {
     pub points: Vec<Point>,
     /// Methods that could not draw, and why.
     pub left_out: Vec<(String, String)>,
-    /// Methods done, and all.
-    pub done: usize,
+    /// Methods to measure.
     pub all: usize,
 }
 
@@ -41,18 +38,11 @@ pub(crate) struct Measured {
 #[derive(Default)]
 pub(crate) struct Front {
     pub job: Job<(), ()>,
-    /// Of the points.
-    view: Option<View>,
+    pub view: Option<View>,
     pub measured: Rc<RefCell<Measured>>,
 }
 
 impl Front {
-    /// Whether the points are of another view than this.
-    pub fn is_of_another(&self, key: &Key) -> bool {
-        self.view.is_some_and(|measured| measured != key.view)
-    }
-
-    /// Begins anew.
     pub fn measure(&mut self, stage: &Stage, view: View) {
         let measured = Rc::default();
         let work = all(Rc::clone(&stage.renderer), view, Rc::clone(&measured));
@@ -89,7 +79,6 @@ async fn all(renderer: Rc<Renderer>, view: View, measured: Rc<RefCell<Measured>>
         }
         let of = |p: &Point| [p.time_ms, p.mse255];
         metrics::mark_front(&mut measured.points, of, |p, on| p.on_front = on);
-        measured.done += 1;
     }
     Ok(())
 }

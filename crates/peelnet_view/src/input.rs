@@ -22,7 +22,6 @@ const TURN: f32 = 0.1;
 /// Seconds that a whole timeline takes, and a turn of the turntable.
 const LENGTH: f32 = 8.0;
 
-/// Keys, for the help.
 pub(crate) const KEYS: [(&str, &str); 14] = [
     ("drag", "orbit"),
     ("right drag, Shift + drag, two fingers", "pan"),
@@ -78,7 +77,6 @@ impl App {
         }
     }
 
-    /// Opens what was dropped onto the window.
     #[cfg(not(target_arch = "wasm32"))]
     pub fn take_dropped(&mut self, ui: &Context) {
         let files = ui.input(|i| i.raw.dropped_files.clone());
@@ -158,7 +156,6 @@ impl App {
         }
     }
 
-    /// Looks at everything.
     pub fn fit(&mut self) {
         let [width, height] = self.size.map(|n| n.max(1) as f32);
         self.move_eye(|camera, all| eye::fit(camera, all, width / height));

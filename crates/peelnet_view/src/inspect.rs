@@ -12,7 +12,6 @@ pub(crate) struct Layer {
     pub believed: Option<f64>,
 }
 
-/// The fragments of the pixel that was clicked.
 #[derive(Default)]
 pub(crate) struct Inspector {
     /// The pixel, from the upper left corner.
@@ -21,7 +20,6 @@ pub(crate) struct Inspector {
 }
 
 impl Inspector {
-    /// The layers of the pixel, where they are known.
     pub fn layers(&self) -> Option<&Result<Vec<Layer>, String>> {
         let ((_, pixel), layers) = self.job.last.as_ref()?;
         (Some(*pixel) == self.pixel).then_some(layers)

@@ -10,6 +10,8 @@
 //!
 //! Controls of methods are made from the methods' declarations ([`peelnet_render::METHODS`]): a new method or parameter appears by itself.
 
+#![allow(missing_docs)]
+
 mod address;
 mod app;
 mod compare;

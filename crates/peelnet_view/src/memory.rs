@@ -12,10 +12,6 @@ pub(crate) fn load(storage: Option<&dyn eframe::Storage>) -> Vec<PathBuf> {
     lines.map(PathBuf::from).collect()
 }
 
-pub(crate) fn save(storage: &mut dyn eframe::Storage, recent: &[PathBuf]) {
-    storage.set_string(RECENT, text(recent));
-}
-
 /// A name with a line break is not remembered.
 pub(crate) fn text(recent: &[PathBuf]) -> String {
     let names = recent.iter().filter_map(|p| p.to_str());

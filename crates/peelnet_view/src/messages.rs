@@ -3,7 +3,6 @@
 use crate::task::one_line;
 use std::error::Error;
 
-/// Lines that are kept.
 const MOST: usize = 4;
 
 /// Lines, each with whether it is an error.
@@ -19,7 +18,6 @@ impl Messages {
         self.add(false, text);
     }
 
-    /// Says what went wrong, if anything did.
     pub fn unless_error<T>(&mut self, result: Result<T, impl Into<Box<dyn Error>>>) -> Option<T> {
         result.map_err(|e| self.error(one_line(&*e.into()))).ok()
     }

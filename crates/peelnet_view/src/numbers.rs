@@ -10,28 +10,16 @@ use peelnet_gpu::wgpu;
 use peelnet_render::{FrameStats, Image, MethodOptions, Renderer, role};
 use std::{rc::Rc, sync::Arc};
 
-/// The method that others are judged by.
 pub(crate) const EXACT: &str = role::REFERENCE;
 
 /// What an error was measured of.
 #[derive(Clone, PartialEq)]
 pub(crate) struct Key {
     pub view: View,
-    method: String,
-    network: Option<u64>,
+    pub method: String,
+    pub network: Option<u64>,
 }
 
-impl Key {
-    pub fn of(view: View, slot: &Slot) -> Self {
-        Self {
-            view,
-            method: slot.spec.to_string(),
-            network: slot.own_network().map(|n| n.number),
-        }
-    }
-}
-
-/// Errors of a picture against the exact one.
 pub(crate) struct Numbers {
     pub differences: Differences,
     /// Mean ꟻLIP; none in a page, for which its code is not compiled.
@@ -45,7 +33,6 @@ pub(crate) struct Numbers {
 pub(crate) type Judge = Job<Key, Numbers>;
 
 impl Judge {
-    /// Begins to measure what is shown, unless that is known.
     pub fn want(&mut self, stage: &Stage, slot: &Slot, key: Key) {
         if self.wants(&key) {
             let last = self.last.as_ref().filter(|(of, _)| of.view == key.view);
@@ -89,7 +76,6 @@ async fn measured(
     })
 }
 
-/// Mean ꟻLIP.
 #[cfg(not(target_arch = "wasm32"))]
 fn flip(exact: &Image, image: &Image) -> Option<f64> {
     use peelnet_eval::perceptual::Displayed;
@@ -111,7 +97,6 @@ pub(crate) struct LayerMap {
 pub(crate) type LayerCounter = Job<View, LayerMap>;
 
 impl LayerCounter {
-    /// Begins to count, unless the map is of this view.
     pub fn want(&mut self, stage: &Stage, view: View) {
         if self.wants(&view) {
             self.begin(view, counted(Rc::clone(&stage.renderer), view));

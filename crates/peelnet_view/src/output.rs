@@ -17,7 +17,6 @@ use std::{
     rc::Rc,
 };
 
-/// Work that writes files.
 #[derive(Default)]
 pub(crate) struct Output {
     pub job: Job<(), String>,
@@ -26,7 +25,6 @@ pub(crate) struct Output {
 }
 
 impl Output {
-    /// What was written last.
     pub fn last(&self) -> Option<&Result<String, String>> {
         self.job.of(&())
     }
@@ -95,7 +93,6 @@ impl App {
         self.output.say(saved);
     }
 
-    /// Copies the text of a learned method in a language.
     pub(crate) fn copy_shader(&mut self, ui: &egui::Context, language: Language) {
         let Some(model) = self.first.model() else {
             return;
@@ -113,7 +110,6 @@ impl App {
     }
 }
 
-/// Writes a picture. Nothing but an older picture of ours is replaced.
 fn save(image: &Image, path: &Path) -> Fallible<String> {
     let format = ImageFormat::of(path)?;
     if cfg!(target_arch = "wasm32") {
@@ -130,14 +126,14 @@ fn save(image: &Image, path: &Path) -> Fallible<String> {
 /// Writes a new file; what was written.
 #[cfg(not(target_arch = "wasm32"))]
 fn keep(path: &Path, bytes: &[u8]) -> Fallible<String> {
+    let name = shown(path);
     if path.exists() {
-        return Err(format!("{}: is there already; move it away", shown(path)).into());
+        return Err(format!("{name}: is there already; move it away").into());
     }
-    peelnet_files::write_whole(path, bytes)?;
-    Ok(format!("{} is written", shown(path)))
+    peelnet_files::write_whole(path, bytes).map_err(|e| format!("{name}: {e}"))?;
+    Ok(format!("{name} is written"))
 }
 
-/// Hands a new file to the browser.
 #[cfg(target_arch = "wasm32")]
 fn keep(path: &Path, bytes: &[u8]) -> Fallible<String> {
     crate::web::download(path, bytes)?;

@@ -17,7 +17,8 @@ use web_time::Instant;
 pub struct Script {
     frames: u64,
     screenshot: Option<PathBuf>,
-    asked: bool,
+    /// Whether all frames are drawn; until then they are drawn again although nothing changes.
+    pub(crate) asked: bool,
     last: Option<Instant>,
     /// What frames cost, milliseconds: from frame to frame, the method's passes where their times came back, and the window's frame on the CPU.
     costs: [Vec<f64>; 3],
@@ -41,11 +42,6 @@ impl Script {
     pub fn outcome(&self) -> Option<Result<String, String>> {
         let mut outcome = self.outcome.lock().unwrap_or_else(PoisonError::into_inner);
         outcome.take()
-    }
-
-    /// Frames are drawn again while a script counts them.
-    pub(crate) const fn draws_always(&self) -> bool {
-        !self.asked
     }
 
     fn finish(&self, ui: &Context, outcome: Result<String, String>) {

@@ -11,7 +11,7 @@ use peelnet_gpu::{
 };
 use peelnet_model::{Model, Recipe};
 use peelnet_render::{
-    Frame, FrameStats, FrameStatus, LayerView, LearnedWeight, MethodOptions, MethodSpec, Prepared,
+    Frame, FrameStats, FrameStatus, LearnedWeight, MethodOptions, MethodSpec, Prepared,
     RenderError, Renderer, Target, milliseconds,
 };
 use peelnet_scene::Camera;
@@ -20,7 +20,6 @@ use std::{path::PathBuf, rc::Rc};
 /// Format of pictures: what engines draw transparency onto before they map tones.
 const PICTURE: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 
-/// A network that was read from a file.
 #[derive(Clone)]
 pub(crate) struct Network {
     pub path: PathBuf,
@@ -31,7 +30,6 @@ pub(crate) struct Network {
 }
 
 impl Network {
-    /// Reads a model file and writes its shader text.
     pub fn from_bytes(path: PathBuf, bytes: &[u8]) -> Fallible<Self> {
         let model = Model::from_bytes(bytes, &path)?;
         let weight = LearnedWeight {
@@ -52,9 +50,7 @@ pub(crate) struct Slot {
     pub spec: MethodSpec,
     /// From a file; the method may be another one's.
     pub network: Option<Network>,
-    layers: Option<LayerView>,
     prepared: Option<(u64, Prepared)>,
-    /// The picture, after the first frame.
     pub picture: Option<wgpu::TextureView>,
     shown: Option<View>,
     pub status: FrameStatus,
@@ -63,7 +59,6 @@ pub(crate) struct Slot {
     pub times: Vec<PassTime>,
     /// Why there is no new picture.
     pub failure: Option<String>,
-    /// Frames drawn.
     pub frames: u64,
     /// Clock time that making the method ready took, pipelines included: the pause when it is chosen, milliseconds.
     pub ready_ms: f64,
@@ -74,7 +69,6 @@ impl Slot {
         Self {
             spec,
             network: None,
-            layers: None,
             prepared: None,
             picture: None,
             shown: None,
@@ -114,7 +108,6 @@ impl Slot {
         }
     }
 
-    /// Another method from the next frame on.
     pub fn set_spec(&mut self, spec: MethodSpec) {
         if spec != self.spec {
             self.spec = spec;
@@ -138,7 +131,6 @@ impl Slot {
         self.times.clear();
     }
 
-    /// What the method reports of its frames.
     pub fn stats(&self) -> FrameStats {
         let prepared = self.prepared.as_ref();
         prepared.map(|(_, p)| p.stats()).unwrap_or_default()
@@ -157,10 +149,6 @@ impl Slot {
         view: View,
         always: bool,
     ) -> bool {
-        if self.layers != stage.shown.layers {
-            self.layers = stage.shown.layers;
-            self.forget();
-        }
         if self.shown == Some(view) {
             let is_done = self.failure.is_some() || self.status == FrameStatus::Whole;
             if is_done && !always {
@@ -193,7 +181,7 @@ impl Slot {
             Some(prepared) => prepared,
             None => {
                 let begin = web_time::Instant::now();
-                let made = match self.layers {
+                let made = match stage.shown.layers {
                     Some(layers) => renderer.layers(layers, view.size),
                     None => renderer.method(&self.spec, self.options(view.size)),
                 };
@@ -214,7 +202,6 @@ impl Slot {
         Ok(())
     }
 
-    /// Takes the times that came back.
     pub fn poll(&mut self, ui: &egui::Context) {
         if let Some(Ok(times)) = Task::finish(&mut self.timing, ui) {
             self.times = times;
@@ -222,7 +209,6 @@ impl Slot {
     }
 }
 
-/// Width and height of a texture.
 pub(crate) fn size_of(view: &wgpu::TextureView) -> [u32; 2] {
     [view.texture().width(), view.texture().height()]
 }

@@ -17,10 +17,8 @@ use std::{
     },
 };
 
-/// Dropped files by their names.
 pub(crate) type Files = HashMap<PathBuf, Vec<u8>>;
 
-/// Where a scene was read from.
 #[derive(Clone)]
 pub(crate) struct Source {
     /// A file, or the name of a shipped scene.
@@ -38,12 +36,10 @@ impl Source {
         }
     }
 
-    /// Its name, for titles and messages.
     pub fn name(&self) -> String {
         shown(&self.path)
     }
 
-    /// The file as it is.
     pub fn bytes(&self) -> Fallible<Vec<u8>> {
         if let Some(files) = &self.dropped {
             return Ok(files.get(&self.path).cloned().unwrap_or_default());
@@ -104,7 +100,6 @@ pub(crate) struct View {
     pub size: [u32; 2],
 }
 
-/// A scene, drawn by one renderer.
 pub(crate) struct Stage {
     pub gpu: Gpu,
     pub source: Source,
@@ -129,7 +124,6 @@ pub(crate) fn next_number() -> u64 {
 }
 
 impl Stage {
-    /// Loads a scene and puts it on the GPU.
     pub fn open(gpu: &Gpu, source: Source, time: Option<f32>) -> Fallible<Self> {
         let scene = source.load(time)?;
         Self::of_scene(gpu, source, scene)
@@ -166,7 +160,6 @@ impl Stage {
         Some((states.first()?.time, states.last()?.time))
     }
 
-    /// The time that is shown of a timeline.
     pub fn time(&self) -> Option<f32> {
         self.times().map(|_| self.scene.time)
     }
@@ -179,7 +172,6 @@ impl Stage {
         Ok(())
     }
 
-    /// Draws something else of the scene.
     pub fn set_shown(&mut self, shown: Shown) -> Fallible<()> {
         self.show(self.scene.clone(), shown)
     }
@@ -191,7 +183,6 @@ impl Stage {
         Ok(edited?)
     }
 
-    /// Takes all changes back.
     pub fn reset(&mut self) -> Fallible<()> {
         self.show(self.loaded.clone(), Shown::default())
     }
@@ -212,19 +203,16 @@ impl Stage {
         Ok(())
     }
 
-    /// Moves an object.
     pub fn set_transform(&mut self, object: usize, to: glam::Mat4) -> Fallible<()> {
         self.scene.objects[object].world_from_object = to;
         self.edit(|renderer| renderer.set_transform(object, to))
     }
 
-    /// Gives a part of an object another material.
     pub fn set_material(&mut self, object: usize, part: usize, to: Material) -> Fallible<()> {
         self.scene.objects[object].materials[part] = to.clone();
         self.edit(|renderer| renderer.set_material(object, part, to))
     }
 
-    /// Replaces all lights.
     pub fn set_lights(&mut self, lights: Vec<Light>) -> Fallible<()> {
         self.scene.lights.clone_from(&lights);
         self.edit(|renderer| renderer.set_lights(lights))

@@ -22,7 +22,6 @@ pub(crate) fn one_line(error: &dyn Error) -> String {
 pub(crate) struct Task<T>(Pin<Box<dyn Future<Output = T>>>);
 
 impl<T> Task<T> {
-    /// Begins at the first poll.
     pub fn new(future: impl Future<Output = T> + 'static) -> Self {
         Self(Box::pin(future))
     }
@@ -117,7 +116,6 @@ impl<K: PartialEq + 'static, T: 'static> Job<K, T> {
         self.task = Some(Task::new(async move { (key, work.await) }));
     }
 
-    /// Goes on.
     pub fn poll(&mut self, ui: &Context) {
         if let Some((key, result)) = Task::finish(&mut self.task, ui) {
             self.last = Some((key, result.map_err(|e| one_line(&*e))));

@@ -3,7 +3,6 @@
 use egui::Context;
 use std::{fs, path::PathBuf, time::Duration, time::SystemTime};
 
-/// How often the file is looked at.
 const EVERY: Duration = Duration::from_millis(500);
 
 #[derive(Default)]

@@ -16,7 +16,8 @@ pub(super) fn show(app: &mut App, ui: &mut Ui) {
                 app.front.job.cancel();
             }
             let measured = app.front.measured.borrow();
-            ui.label(format!("{} of {}", measured.done, measured.all));
+            let done = measured.points.len() + measured.left_out.len();
+            ui.label(format!("{done} of {}", measured.all));
             ui.spinner();
         } else if button(ui, "Measure all methods", about)
             && let Some(stage) = app.stage.as_ref().filter(|s| s.shown.layers.is_none())
@@ -24,7 +25,7 @@ pub(super) fn show(app: &mut App, ui: &mut Ui) {
             app.front.measure(stage, key.view);
         }
     });
-    if app.front.is_of_another(&key) {
+    if app.front.view.is_some_and(|measured| measured != key.view) {
         ui.weak("Measured on an earlier view.");
     }
     if let Some(Err(e)) = app.front.job.of(&()) {
@@ -50,7 +51,6 @@ pub(super) fn show(app: &mut App, ui: &mut Ui) {
     }
 }
 
-/// The method that was clicked.
 fn chart<'a>(ui: &mut Ui, points: &'a [Point], own: &str) -> Option<&'a str> {
     let size = vec2(ui.available_width().max(160.0), 220.0);
     let (rect, response) = ui.allocate_exact_size(size, Sense::click());

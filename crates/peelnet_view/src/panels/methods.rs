@@ -14,7 +14,6 @@ use peelnet_render::{
 };
 use std::ops::RangeInclusive;
 
-/// Methods that a GPU draws.
 pub(crate) fn offered() -> impl Iterator<Item = &'static Method> {
     METHODS.iter().filter(|m| m.cpu_only.is_none())
 }
@@ -52,7 +51,6 @@ pub(super) fn compare(app: &mut App, ui: &mut Ui) {
     }
 }
 
-/// Controls of a method and its parameters.
 fn choose(ui: &mut Ui, label: &str, salt: &str, slot: &mut Slot) {
     let mut spec = slot.spec.clone();
     let list = ComboBox::from_label(label).selected_text(spec.name());
@@ -76,26 +74,26 @@ fn choose(ui: &mut Ui, label: &str, salt: &str, slot: &mut Slot) {
         }
     });
     ui.weak(spec.method().about);
-    parameters(ui, salt, &mut spec);
+    ui.push_id(salt, |ui| parameters(ui, &mut spec));
     slot.set_spec(spec);
 }
 
 /// A control for the number at the end of the name and for every parameter. What the method does not allow changes nothing: controls keep to
 /// the limits, but for those that are excluded.
-fn parameters(ui: &mut Ui, salt: &str, spec: &mut MethodSpec) {
-    let grid = egui::Grid::new(("parameters", salt)).num_columns(2);
+fn parameters(ui: &mut Ui, spec: &mut MethodSpec) {
+    let grid = egui::Grid::new("parameters").num_columns(2);
     grid.show(ui, |ui| {
         if let Some(numbered) = spec.method().numbered {
             let label = ui.label("number");
-            let now = spec.number();
-            let changed = number(ui, salt, numbered, now, label.id);
-            *spec = changed.map_or_else(|| spec.clone(), |n| spec.with_number(n));
+            if let Some(n) = number(ui, numbered, spec.number(), label.id) {
+                *spec = spec.with_number(n);
+            }
             ui.end_row();
         }
         for parameter in spec.method().all_parameters() {
             let name = parameter.name;
             let label = ui.label(name).on_hover_text(parameter.about);
-            match control(ui, salt, parameter, spec, label.id) {
+            match control(ui, parameter, spec, label.id) {
                 Some(Some(value)) => {
                     if let Ok(changed) = spec.with(name, &value) {
                         *spec = changed;
@@ -110,17 +108,18 @@ fn parameters(ui: &mut Ui, salt: &str, spec: &mut MethodSpec) {
 }
 
 /// The number at the end of the name, where it was changed.
-fn number(ui: &mut Ui, salt: &str, numbered: Numbered, now: u32, label: egui::Id) -> Option<u32> {
+fn number(ui: &mut Ui, numbered: Numbered, now: u32, label: egui::Id) -> Option<u32> {
     let all = numbered.least..=numbered.most;
     if !numbered.power_of_two {
         return drag(ui, now, all, 1.0, label);
     }
     let powers = (0..32).map(|k| 1u32 << k).filter(|n| all.contains(n));
-    let powers = powers.map(|n| (n.to_string(), n)).collect();
-    chosen(ui, (salt, "number"), &now.to_string(), powers, label)
+    let powers = powers.map(|n| n.to_string());
+    chosen(ui, "number", &now.to_string(), powers, label)?
+        .parse()
+        .ok()
 }
 
-/// A number that is dragged, where it was changed.
 fn drag<N: egui::emath::Numeric>(
     ui: &mut Ui,
     mut number: N,
@@ -136,12 +135,10 @@ fn drag<N: egui::emath::Numeric>(
 /// The control of a parameter; its new value where that was changed, `Some(None)` for the default.
 fn control(
     ui: &mut Ui,
-    salt: &str,
     parameter: &Parameter,
     spec: &MethodSpec,
     label: egui::Id,
 ) -> Option<Option<String>> {
-    let salt = (salt, parameter.name);
     match parameter.values {
         Values::Number { most, .. } => {
             let x = parameter.number(spec);
@@ -173,36 +170,36 @@ fn control(
         }
         Values::Words(words) => {
             let words = words.iter().map(|word| word.to_string());
-            let words = words.map(|word| (word.clone(), Some(word))).collect();
-            chosen(ui, salt, parameter.word(spec), words, label)
+            chosen(ui, parameter.name, parameter.word(spec), words, label).map(Some)
         }
         Values::Precision => {
-            let now = parameter.word(spec);
-            let now = if now.is_empty() { "its own" } else { now };
-            let words = Precision::WORDS.map(|word| (word.to_owned(), Some(word.to_owned())));
-            let all = std::iter::once(("its own".to_owned(), None)).chain(words);
-            chosen(ui, salt, now, all.collect(), label)
+            const OWN: &str = "its own";
+            let now = Some(parameter.word(spec)).filter(|word| !word.is_empty());
+            let words = [OWN].into_iter().chain(Precision::WORDS);
+            let words = words.map(str::to_owned);
+            let word = chosen(ui, parameter.name, now.unwrap_or(OWN), words, label);
+            word.map(|word| (word != OWN).then_some(word))
         }
     }
 }
 
-/// A list of words; the value of the one that was chosen.
-fn chosen<T>(
+/// A list of words; the one that was chosen.
+fn chosen(
     ui: &mut Ui,
-    salt: (&str, &str),
+    salt: &str,
     now: &str,
-    mut words: Vec<(String, T)>,
+    words: impl Iterator<Item = String>,
     label: egui::Id,
-) -> Option<T> {
-    let before = words.iter().position(|(word, _)| word == now)?;
+) -> Option<String> {
+    let mut words: Vec<String> = words.collect();
+    let before = words.iter().position(|word| word == now)?;
     let mut place = before;
     let list = ComboBox::from_id_salt(salt);
-    let list = list.show_index(ui, &mut place, words.len(), |k| words[k].0.as_str());
+    let list = list.show_index(ui, &mut place, words.len(), |k| words[k].as_str());
     list.labelled_by(label);
-    (place != before).then(|| words.swap_remove(place).1)
+    (place != before).then(|| words.swap_remove(place))
 }
 
-/// Which network draws.
 fn network(app: &mut App, ui: &mut Ui) {
     let own = app.first.own_network();
     if let Some(name) = own.map(|n| peelnet_files::shown(&n.path)) {

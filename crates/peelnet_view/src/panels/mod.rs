@@ -18,26 +18,19 @@ const NARROW: f32 = 760.0;
 /// Which panels are open, what is typed into them, and what moves.
 #[derive(Default)]
 pub(crate) struct State {
-    /// The picture alone.
     pub bare: bool,
     pub left: bool,
     pub right: bool,
     /// Whether errors are measured when the view rests.
     pub measures: bool,
     pub help: bool,
-    /// Whether the timeline plays.
     pub plays: bool,
     /// Whether the eye goes round.
     pub turns: bool,
-    /// What is typed as a file to open.
     pub path: String,
-    /// What is typed as a network's file.
     pub model: String,
-    /// The object that is edited.
     pub object: usize,
-    /// Whether points of the front are listed.
     pub listed: bool,
-    /// Frames of a film that is saved.
     pub frames: u32,
 }
 
@@ -54,7 +47,6 @@ impl State {
     }
 }
 
-/// The whole window.
 pub(crate) fn show(app: &mut App, ui: &mut Ui, egui: &RenderState) {
     app.panels.bare ^= ui.input_mut(|i| i.consume_key(egui::Modifiers::NONE, egui::Key::Tab));
     if app.panels.bare {
@@ -101,7 +93,6 @@ fn column(panel: Panel, size: f32, ui: &mut Ui, add: impl FnOnce(&mut Ui)) {
 
 type Section = (&'static str, bool, fn(&mut App, &mut Ui));
 
-/// What is chosen.
 fn controls(app: &mut App, ui: &mut Ui) {
     let all: [Section; 7] = [
         ("Method", true, methods::show),
@@ -115,7 +106,6 @@ fn controls(app: &mut App, ui: &mut Ui) {
     sections(&all, app, ui);
 }
 
-/// What is measured.
 fn results(app: &mut App, ui: &mut Ui) {
     let all: [Section; 4] = [
         ("Error of this view", true, numbers::show),

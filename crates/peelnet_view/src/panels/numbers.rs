@@ -24,7 +24,6 @@ pub(super) fn show(app: &mut App, ui: &mut Ui) {
     }
 }
 
-/// Rows of a name, its value and what it is.
 fn table<N: Into<String>>(ui: &mut Ui, name: &str, rows: Vec<(N, String, &str)>) {
     Grid::new(name).striped(true).show(ui, |ui| {
         for (name, value, about) in rows {

@@ -7,7 +7,6 @@ use glam::{EulerRot, Mat4, Quat, Vec3};
 use peelnet_render::{LayerFormula, LayerView};
 use peelnet_scene::{Census, Effect, Light, Lighting, Material, Source};
 
-/// What the check box of increasing layers does.
 const INCREASING: &str =
     "Leaves out surfaces whose layer is not deeper than the one in front of them";
 

@@ -60,7 +60,6 @@ fn open(app: &mut App, ui: &mut Ui) {
     }
 }
 
-/// Where a path is typed.
 fn path(app: &mut App, ui: &mut Ui, chosen: &mut Option<PathBuf>) {
     let path = ui.label("File, or drop it onto the window");
     ui.horizontal(|ui| {

@@ -9,7 +9,6 @@ use wasm_bindgen::{JsCast as _, JsValue};
 /// Bytes that are read at once: a page has 4 GiB of memory, and a scene needs several times the size of its file.
 const MOST: f64 = 512.0 * 1024.0 * 1024.0;
 
-/// Reads dropped files.
 pub(super) async fn read(dropped: Vec<DroppedFileHandle>) -> Fallible<Files> {
     let sizes = dropped.iter().filter_map(|file| file.web_file());
     let bytes: f64 = sizes.map(|file| file.size()).sum();

@@ -1,6 +1,6 @@
 //! What the page's own script, and tests, do with the viewer.
 
-use super::{Begin, Shelf, say};
+use super::{Shelf, say};
 use crate::{
     app::App,
     eye,
@@ -16,9 +16,7 @@ use wasm_bindgen::{JsValue, prelude::wasm_bindgen};
 pub struct Page {
     pub(super) runner: eframe::WebRunner,
     pub(super) canvas: web_sys::HtmlCanvasElement,
-    /// Devices that were lost.
     pub(super) lost: Rc<Cell<u32>>,
-    /// The scene that the browser keeps.
     pub(super) shelf: Rc<Shelf>,
 }
 
@@ -67,7 +65,7 @@ impl Page {
             lost: Rc::default(),
             shelf: Rc::new(shelf),
         };
-        page.begin(Begin::Address(query)).await?;
+        page.begin(query, None).await?;
         say("");
         Ok(page)
     }
@@ -78,7 +76,6 @@ impl Page {
         self.with(|app| app.take_files(files));
     }
 
-    /// Shows a message.
     pub fn warn(&self, text: &str) {
         let text = peelnet_files::one_line(text).into_owned();
         self.with(|app| app.messages.warn(text));
@@ -99,17 +96,14 @@ impl Page {
         Ok(())
     }
 
-    /// The method.
     pub fn method(&self) -> Option<String> {
         self.read(|app| app.first.spec.to_string())
     }
 
-    /// Opens a shipped scene.
     pub fn open_scene(&self, name: &str) {
         self.with(|app| app.open(Source::named(name), None));
     }
 
-    /// The scene's name.
     pub fn scene(&self) -> Option<String> {
         self.read(|app| app.stage.as_ref().map(|s| s.source.name()))?
     }
@@ -117,11 +111,6 @@ impl Page {
     /// Turns about the target, radians.
     pub fn orbit(&self, yaw: f32, pitch: f32) {
         self.with(|app| app.move_eye(|camera, _| eye::orbit(camera, yaw, pitch)));
-    }
-
-    /// Looks through one of the scene's cameras.
-    pub fn set_view(&self, number: usize) {
-        self.with(|app| app.show_view(number));
     }
 
     /// Frames that the method has drawn since the page was opened or its device lost.
@@ -158,7 +147,6 @@ impl Page {
         self.read(lines).unwrap_or_default().join("\n")
     }
 
-    /// Devices that were lost since the page was opened.
     pub fn devices_lost(&self) -> u32 {
         self.lost.get()
     }

@@ -18,9 +18,10 @@ use egui::{FontData, FontDefinitions, FontFamily};
 pub(crate) use files::{choose_files, download};
 pub use handle::Page;
 use peelnet_gpu::{AdapterRequest, Gpu, GpuError};
+use peelnet_render::MethodSpec;
 use peelnet_scene::Camera;
 use shelf::Shelf;
-use std::{path::PathBuf, rc::Rc};
+use std::path::PathBuf;
 use wasm_bindgen::JsValue;
 
 /// The scene and the method of a page that was not opened before.
@@ -35,16 +36,12 @@ const MOST_LOST: u32 = 5;
 pub(crate) struct InPage {
     /// Draws the page again.
     context: egui::Context,
-    /// Files that were dropped and are being read.
     reading: Option<Task<Fallible<Files>>>,
     /// What the address says, and when it was written.
     address: (String, f64),
-    /// Begins again with another device.
-    again: Option<Rc<dyn Fn()>>,
-    /// The frame that the GPU is drawing.
     drawing: Option<Task<()>>,
-    /// The scene that the browser keeps.
-    shelf: Option<Rc<Shelf>>,
+    /// Begins again with another device, and has the scene that the browser keeps.
+    handle: Option<Page>,
 }
 
 impl InPage {
@@ -55,7 +52,6 @@ impl InPage {
         self.drawing.is_some()
     }
 
-    /// A frame was submitted.
     pub fn drew(&mut self, gpu: &Gpu, ui: &egui::Context) {
         let gpu = gpu.clone();
         self.drawing = Some(Task::new(async move { gpu.submitted_async().await }));
@@ -64,11 +60,9 @@ impl InPage {
     }
 }
 
-/// What is shown, without anything of a device.
+/// What is shown beside what the address says, without anything of a device.
 struct Kept {
-    source: Option<Source>,
-    /// With both methods and the time.
-    start: Start,
+    against: MethodSpec,
     camera: Camera,
     view: Option<usize>,
     network: Option<Network>,
@@ -79,14 +73,8 @@ struct Kept {
 impl App {
     /// Leaves the application without anything that is worth keeping.
     fn keep(&mut self) -> Kept {
-        let stage = self.stage.as_ref();
         Kept {
-            source: stage.map(|s| s.source.clone()),
-            start: Start {
-                against: Some(self.second.spec.clone()),
-                time: stage.and_then(|s| s.time()),
-                ..Start::new(FIRST.0, self.first.spec.clone())
-            },
+            against: self.second.spec.clone(),
             camera: self.camera,
             view: self.view,
             network: self.first.network.take(),
@@ -95,7 +83,16 @@ impl App {
         }
     }
 
-    /// The application of an address.
+    /// As it was, with another device.
+    fn restore(&mut self, kept: Kept) {
+        self.first.set_network(kept.network);
+        self.second.set_spec(kept.against);
+        (self.camera, self.view) = (kept.camera, kept.view);
+        (self.compare, self.panels) = (kept.compare, kept.panels);
+        self.messages
+            .warn("the graphics device was lost: this view is drawn by a new one".into());
+    }
+
     fn of_address(
         gpu: &Gpu,
         query: &str,
@@ -133,34 +130,19 @@ impl App {
         Ok(app)
     }
 
-    /// The application of another device, as it was.
-    fn of_kept(gpu: &Gpu, kept: Kept, recent: Vec<PathBuf>) -> Self {
-        let time = kept.start.time;
-        let mut app = Self::empty(gpu, kept.start, recent);
-        app.first.set_network(kept.network);
-        (app.compare, app.panels) = (kept.compare, kept.panels);
-        if let Some(source) = kept.source {
-            app.open(source, time);
-            (app.camera, app.view) = (kept.camera, kept.view);
-        }
-        app.messages
-            .warn("the graphics device was lost: this view is drawn by a new one".into());
-        app
-    }
-
     /// Has the browser keep a dropped scene, in place of the one before.
     pub(crate) fn keep_dropped(&mut self, source: &Source) {
-        if let Some(shelf) = &self.page.shelf
-            && shelf.put(source)
+        if let Some(page) = &self.page.handle
+            && page.shelf.put(source)
         {
-            self.recent.retain(|path| shelf.has(path));
+            self.recent.retain(|path| page.shelf.has(path));
         }
     }
 
     /// The scene of a name: the one that the browser keeps, or one that ships.
     pub(crate) fn kept_or_named(&self, path: PathBuf) -> Source {
-        match &self.page.shelf {
-            Some(shelf) => shelf.source(path),
+        match &self.page.handle {
+            Some(page) => page.shelf.source(path),
             None => Source::named(path),
         }
     }
@@ -171,8 +153,8 @@ impl App {
             return false;
         }
         // Once: frames may still come until it has begun.
-        if let Some(again) = self.page.again.take() {
-            again();
+        if let Some(page) = self.page.handle.take() {
+            wasm_bindgen_futures::spawn_local(async move { page.begin_again().await });
         }
         true
     }
@@ -221,7 +203,6 @@ impl App {
     }
 }
 
-/// An element of the page by its id.
 fn element(id: &str) -> Option<web_sys::Element> {
     web_sys::window()?.document()?.get_element_by_id(id)
 }
@@ -231,12 +212,6 @@ fn say(text: &str) {
     if let Some(element) = element("say") {
         element.set_text_content(Some(text));
     }
-}
-
-/// Why there is nothing to draw with.
-fn no_device(error: &GpuError) -> String {
-    let why = one_line(error);
-    format!("This browser gave the page no graphics device ({why}). Reload the page to try again.")
 }
 
 /// One font for words and for numbers, and egui's own signs; what they lack the browser draws.
@@ -256,18 +231,14 @@ fn fonts() -> FontDefinitions {
     fonts
 }
 
-/// What the application begins with.
-enum Begin {
-    /// What the address says.
-    Address(String),
-    /// What was shown before.
-    Again(Box<Kept>),
-}
-
 impl Page {
-    async fn begin(&self, begin: Begin) -> Result<(), String> {
+    /// Opens a device, and what the query of an address says; after another device, what was shown.
+    async fn begin(&self, query: String, kept: Option<Kept>) -> Result<(), String> {
         let opened = Gpu::open_async(&AdapterRequest::Auto).await;
-        let gpu = opened.map_err(|e| no_device(&e))?;
+        let gpu = opened.map_err(|e| {
+            let why = one_line(&e);
+            format!("This browser gave the page no graphics device ({why}). Reload the page to try again.")
+        })?;
         let options = eframe::WebOptions {
             wgpu_options: configuration(&gpu),
             ..Default::default()
@@ -276,19 +247,14 @@ impl Page {
         let make: eframe::AppCreator<'static> = Box::new(move |cc| {
             cc.egui_ctx.set_fonts(fonts());
             let recent = memory::load(cc.storage);
-            let mut app = match begin {
-                Begin::Address(query) => {
-                    App::of_address(&gpu, &query, recent, &page.shelf).map_err(|e| one_line(&*e))?
-                }
-                Begin::Again(kept) => App::of_kept(&gpu, *kept, recent),
-            };
+            let app = App::of_address(&gpu, &query, recent, &page.shelf);
+            let mut app = app.map_err(|e| one_line(&*e))?;
+            if let Some(kept) = kept {
+                app.restore(kept);
+            }
             gpu.wake_when_lost(repaints(&cc.egui_ctx));
             app.page.context = cc.egui_ctx.clone();
-            app.page.shelf = Some(Rc::clone(&page.shelf));
-            app.page.again = Some(Rc::new(move || {
-                let page = page.clone();
-                wasm_bindgen_futures::spawn_local(async move { page.begin_again().await });
-            }));
+            app.page.handle = Some(page);
             Ok(Box::new(app))
         });
         let started = self.runner.start(self.canvas.clone(), options, make).await;
@@ -300,11 +266,12 @@ impl Page {
 
     /// Another device and another application, as it was.
     async fn begin_again(&self) {
-        let kept = self.runner.app_mut::<App>().map(|mut app| app.keep());
+        let app = self.runner.app_mut::<App>();
+        let kept = app.map(|mut app| (app.query().unwrap_or_default(), app.keep()));
         let lost = self.lost.get() + 1;
         self.lost.set(lost);
         self.runner.destroy();
-        let Some(kept) = kept else { return };
+        let Some((query, kept)) = kept else { return };
         if lost > MOST_LOST {
             say(
                 "The browser took the page's graphics device away again and again. Reload the page to try again.",
@@ -312,7 +279,7 @@ impl Page {
             return;
         }
         say("The graphics device was lost: opening another one.");
-        match self.begin(Begin::Again(Box::new(kept))).await {
+        match self.begin(query, Some(kept)).await {
             Ok(()) => say(""),
             Err(e) => say(&e),
         }

@@ -32,7 +32,6 @@ impl Shelf {
         path.to_str().and_then(suite::find).is_some() || is_kept()
     }
 
-    /// Where the scene of a name comes from.
     pub fn source(&self, path: PathBuf) -> Source {
         let kept = self.kept.borrow();
         let kept = kept.as_ref().filter(|(name, _)| *name == path);
