@@ -22,10 +22,7 @@ pub enum ColumnKind {
 macro_rules! columns {
     ($($(#[doc = $doc:literal])+ $variant:ident $name:ident $kind:ident $type:ty,)+) => {
         /// A column of the dataset. The discriminants are the order in every format.
-        #[derive(
-            Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize,
-        )]
-        #[serde(rename_all = "snake_case")]
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
         pub enum Column {
             $($(#[doc = $doc])+ $variant,)+
         }

@@ -132,7 +132,6 @@ impl Dataset {
             parts: parts.into_iter(),
             current: None,
             held_back: FragmentBatch::default(),
-            failed: false,
         }
     }
 
@@ -250,7 +249,6 @@ pub struct Batches<'a> {
     current: Option<OpenPart>,
     /// Rows of the last pixel that was read, which may go on.
     held_back: FragmentBatch,
-    failed: bool,
 }
 
 impl Batches<'_> {
@@ -297,11 +295,10 @@ impl Iterator for Batches<'_> {
     type Item = Result<FragmentBatch, DatasetError>;
 
     fn next(&mut self) -> Option<Self::Item> {
-        if self.failed {
-            return None;
+        let next = self.next_batch();
+        if next.is_err() {
+            self.parts = Vec::new().into_iter();
         }
-        let next = self.next_batch().transpose();
-        self.failed = matches!(next, Some(Err(_)));
-        next
+        next.transpose()
     }
 }
