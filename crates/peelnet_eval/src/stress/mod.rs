@@ -37,6 +37,7 @@ use properties::Findings;
 use std::path::Path;
 use trial::{Content, Trial, Truth};
 
+#[derive(Debug)]
 pub struct Case {
     pub id: &'static str,
     pub what: &'static str,
@@ -45,6 +46,7 @@ pub struct Case {
     work: Work,
 }
 
+#[derive(Debug)]
 enum Work {
     Frames(fn() -> Vec<Trial>),
     /// Scenes are drawn, by exact methods that take a fixed number of passes.
