@@ -3,14 +3,6 @@
 use crate::app::App;
 #[cfg(any(test, target_arch = "wasm32"))]
 use crate::app::Start;
-use peelnet_scene::Camera;
-
-/// Eye, target and field of view, as `--camera` reads them.
-fn camera_text(camera: &Camera) -> String {
-    let [p, t] = [camera.position, camera.target];
-    let numbers = [p.x, p.y, p.z, t.x, t.y, t.z, camera.fov_y_degrees];
-    numbers.map(|x| x.to_string()).join(",")
-}
 
 /// Eye and target, and the field of view in degrees: six or seven numbers, as `--camera` gives them.
 pub fn camera_numbers(text: &str) -> Result<Vec<f32>, String> {
@@ -37,7 +29,11 @@ impl App {
         let method = ("method", self.first.spec.to_string());
         let view = match self.view {
             Some(number) => ("view", number.to_string()),
-            None => ("camera", camera_text(&self.camera)),
+            None => {
+                let [p, t] = [self.camera.position, self.camera.target];
+                let numbers = [p.x, p.y, p.z, t.x, t.y, t.z, self.camera.fov_y_degrees];
+                ("camera", numbers.map(|x| x.to_string()).join(","))
+            }
         };
         let time = time.map(|time| ("time", time.to_string()));
         [method, view].into_iter().chain(time).collect()
