@@ -1,5 +1,3 @@
-//! How targets blend.
-
 use peelnet_core::guards::HALF_MAX;
 use peelnet_gpu::wgpu;
 
@@ -51,7 +49,6 @@ impl Blend {
         }
     }
 
-    /// The state of a target that blends so.
     pub fn state(self, format: wgpu::TextureFormat) -> wgpu::ColorTargetState {
         let (_, [color, alpha]) = self.table();
         wgpu::ColorTargetState {

@@ -200,7 +200,6 @@ pub(crate) fn depth_attachment(
     }
 }
 
-/// A colour attachment that starts from one value.
 pub fn clear_color(
     view: &wgpu::TextureView,
     [r, g, b, a]: [f64; 4],

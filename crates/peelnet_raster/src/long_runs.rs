@@ -42,7 +42,6 @@ pub(crate) fn kernel(
     Ok(Kernel::new(gpu, shader, &wgsl, entries))
 }
 
-/// Buffers and kernels that sort long runs.
 #[derive(Debug)]
 pub struct LongRuns {
     /// Slots in sorted order.

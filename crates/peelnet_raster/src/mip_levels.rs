@@ -1,5 +1,3 @@
-//! The smaller sizes of textures.
-
 use peelnet_core::srgb;
 use peelnet_scene::Texture;
 use rayon::prelude::*;

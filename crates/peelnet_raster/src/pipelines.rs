@@ -1,5 +1,3 @@
-//! Pipelines of geometry passes: one for each variant of the materials that a pass draws.
-
 use crate::{
     FrameTargets, RenderError, SceneBuffers,
     count::UNWRITTEN,

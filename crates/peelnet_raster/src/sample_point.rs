@@ -1,5 +1,3 @@
-//! Where a frame is sampled.
-
 /// Where in its pixels a frame takes its samples, or which pixel of a larger frame it is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SamplePoint {
@@ -10,7 +8,6 @@ pub struct SamplePoint {
 }
 
 impl SamplePoint {
-    /// The middle of the pixel.
     pub const MIDDLE: Self = Self {
         offset: [0.0; 2],
         zoom: [1.0; 2],

@@ -30,7 +30,6 @@ pub struct Tile {
 }
 
 impl Tile {
-    /// A tile over the pixels `begin..end`, in storage of `capacity` fragments.
     pub fn new(begin: u32, end: u32, capacity: u64) -> Self {
         Self {
             begin,

@@ -40,7 +40,6 @@ pub const BACKGROUND_PASS: &str = "background";
 /// groups or targets. Changes apply to all commands submitted after them.
 #[derive(Debug)]
 pub struct SceneBuffers {
-    /// The device.
     pub gpu: Gpu,
     pub(crate) scene: Scene,
     pub(crate) vertices: wgpu::Buffer,

@@ -20,7 +20,6 @@ pub struct SinglePeel {
 }
 
 impl SinglePeel {
-    /// Builds the passes.
     pub fn new(
         scene: &SceneBuffers,
         frame: &FrameTargets,

@@ -1,5 +1,3 @@
-//! The order in which transparent surfaces are drawn.
-
 use crate::{
     FrameTargets, RenderError, SceneBuffers,
     pipelines::GeometryPipelines,

@@ -165,7 +165,6 @@ mod tests {
         (names.collect(), size_of::<T>())
     }
 
-    /// Every struct lies in memory as the shaders read it.
     #[test]
     fn structs_lie_as_shaders_read_them() {
         let features = ["lit", "pbr", "sun", "numbered", "material"];

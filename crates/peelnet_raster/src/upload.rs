@@ -48,7 +48,6 @@ pub(crate) fn push_run(runs: &mut Vec<DrawRun>, run: DrawRun) {
     }
 }
 
-/// How an object stands in the world.
 #[derive(Clone, Copy)]
 pub(crate) struct Placement<'a> {
     object: &'a Object,
@@ -79,7 +78,6 @@ impl<'a> Placement<'a> {
             .flat_map(move |t| order.map(|k| t[k] as usize))
     }
 
-    /// The vertices of a run of triangles.
     pub fn vertices(&self, triangles: Range<usize>, material: u32) -> impl Iterator<Item = Vertex> {
         let world = self.object.world_from_object;
         let positions = &self.object.mesh.positions;

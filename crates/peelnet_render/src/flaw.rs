@@ -144,7 +144,6 @@ impl Flaw {
     );
 }
 
-/// Whether an adapter is Mesa's software rasteriser.
 fn is_llvmpipe(info: &wgpu::AdapterInfo) -> bool {
     let kind = (info.backend, info.device_type);
     let driver = format!("{} {}", info.driver, info.driver_info).to_lowercase();

@@ -337,7 +337,6 @@ impl Renderer {
         Ok(())
     }
 
-    /// Records all passes of a frame.
     pub(crate) fn encode(
         &self,
         ready: &mut Ready,

@@ -73,7 +73,6 @@ impl Budget {
         take(&mut self.parts, parts, MAX_PARTS, "parts of objects")
     }
 
-    /// Takes a texture of this size.
     pub fn take_texels(&mut self, [width, height]: [u32; 2]) -> Result<(), String> {
         let texels = u64::from(width) * u64::from(height);
         take(&mut self.texels, texels, MAX_TEXELS, "texels")

@@ -60,7 +60,6 @@ pub(crate) fn shown(path: &Path) -> String {
 /// A key of a scene file's table, and what is wrong with its value.
 pub(crate) type Fault = (&'static str, String);
 
-/// Checks what must hold of a key's value.
 pub(crate) fn require(holds: bool, key: &'static str, message: &str) -> Result<(), Fault> {
     if holds {
         return Ok(());
@@ -81,7 +80,6 @@ pub(crate) fn within(key: &'static str, x: f32, low: f32, high: f32) -> Result<(
     Err((key, message))
 }
 
-/// Checks the colour of a surface or a light.
 pub(crate) fn check_color(color: [f32; 3]) -> Result<(), Fault> {
     let outside = color.into_iter().find(|x| !(0.0..=1.0).contains(x));
     let message = "must lie in 0 … 1: divide numbers of 0 … 255 by 255; what is brighter than white has an emission or an intensity";

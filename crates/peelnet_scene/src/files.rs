@@ -74,7 +74,6 @@ impl<'a> Files<'a> {
         Ok(bytes)
     }
 
-    /// Reads a texture.
     pub fn texture(&mut self, path: &Path) -> Result<Texture, SceneError> {
         let bytes = self.read(path, MAX_IMAGE)?;
         let name = path.display().to_string();
@@ -117,7 +116,6 @@ impl<'a> Files<'a> {
         })
     }
 
-    /// Adds a warning about a file.
     pub fn warn(&mut self, path: &Path, text: &str) {
         self.warnings.add(format!("{}: {text}", shown(path)));
     }

@@ -13,7 +13,6 @@ use serde::Deserialize;
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Scatter {
-    /// Number of objects.
     pub count: usize,
     #[serde(default)]
     pub seed: u64,
@@ -75,7 +74,6 @@ impl NumberOrRange {
     }
 }
 
-/// How objects are turned.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(
     rename_all = "kebab-case",
@@ -97,7 +95,6 @@ impl Default for Rotate {
     }
 }
 
-/// How objects are coloured.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(
     rename_all = "kebab-case",

@@ -16,7 +16,6 @@ use glam::{Vec2, Vec3};
 use serde::Deserialize;
 use std::f32::consts::TAU;
 
-/// Most triangles of a shape.
 const MAX_TRIANGLES: usize = 20_000_000;
 
 /// Declares the shapes with their parameters and defaults: a struct for each, which builds a [`Mesh`], and [`Shape`], which is any of them.
@@ -49,7 +48,6 @@ macro_rules! shapes {
 }
 
 shapes! {
-    /// A sphere.
     Sphere "sphere" { radius: f32 = 1.0, triangles: usize = 2000 }
     /// A torus about the y axis: `radius` is the distance of the tube's centre from it.
     Torus "torus" { radius: f32 = 1.0, tube: f32 = 0.35, triangles: usize = 2000 }

@@ -5,7 +5,6 @@ use super::{learned::learned_transmittances, prelude::*};
 use peelnet_core::{methods::anchored, statistics::SumPrecision};
 use peelnet_model::{Inputs, Output};
 
-/// What both sizes have in common.
 const fn anchored(name: &'static str, about: &'static str) -> Method {
     Method {
         parameters: &[TARGETS],

@@ -1,5 +1,3 @@
-//! What a method draws behind, and with.
-
 use super::spec::MethodSpec;
 use crate::{RenderError, target::MethodOptions};
 use peelnet_gpu::{Gpu, bind::Bind, record::Recorder, wgpu};
@@ -31,7 +29,6 @@ pub(crate) struct DrawContext<'a, 'e> {
     pub recorder: &'a mut Recorder<'e>,
     pub scene: &'a SceneBuffers,
     pub camera: &'a Camera,
-    /// Where pixels are sampled.
     pub point: SamplePoint,
     /// `C_0` and where the finished picture goes.
     pub frame: &'a FrameTargets,

@@ -35,7 +35,6 @@ const TOO_FEW_PLACES: Flaw = Flaw::new(
 )
 .when(|s| s.number() < 16);
 
-/// What both have in common.
 const fn method(name: &'static str, about: &'static str) -> Method {
     Method {
         numbered: Numbered::range(1, 64),

@@ -1,5 +1,3 @@
-//! What learned methods have in common.
-
 use super::prelude::*;
 use crate::target::LearnedWeight;
 use peelnet_core::{absorbance::DepthWarp, statistics::SumPrecision};

@@ -97,7 +97,6 @@ const fn jumping(cases: &'static str) -> Flaw {
         .seen_on_llvmpipe()
 }
 
-/// What all of them have in common.
 const fn estimated(name: &'static str, about: &'static str) -> Method {
     Method {
         twin: Some(weighted_twin),

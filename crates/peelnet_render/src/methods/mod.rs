@@ -39,7 +39,6 @@ pub use method::{Estimate, Method, Numbered, Pixel, Promises, Twin, role};
 pub use parameter::{Parameter, Precision, SCALE, Values};
 pub use spec::MethodSpec;
 
-/// What most declarations are made of.
 mod prelude {
     pub(super) use super::{
         compositor::{Build, Compositor, DrawContext, Fit, FrameStats},

@@ -33,7 +33,6 @@ fn blend(drawn: &[Fragment], background: [f32; 3]) -> [f32; 3] {
 
 const SWALLOWED: Flaw = Flaw::swallowed("alpha-tiny deep near-overflow");
 
-/// What both have in common.
 const fn painter(name: &'static str, about: &'static str) -> Method {
     Method {
         parameters: &[TARGETS],

@@ -82,7 +82,6 @@ impl Parameter {
         }
     }
 
-    /// A number above 0.
     pub(super) const fn positive(
         name: &'static str,
         about: &'static str,
@@ -130,7 +129,6 @@ impl Parameter {
         Self::new(name, about, Values::Words(words))
     }
 
-    /// The precision of the method's targets.
     pub(super) const fn targets(about: &'static str) -> Self {
         Self::new("targets", about, Values::Precision)
     }

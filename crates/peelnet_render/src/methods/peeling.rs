@@ -51,7 +51,6 @@ pub(super) struct Peeling<P> {
     counted: bool,
 }
 
-/// The buffer of what passes found.
 pub(super) fn found(b: &Build<'_>) -> Result<wgpu::Buffer, RenderError> {
     Ok(b.scene.gpu.storage("found", 8)?)
 }

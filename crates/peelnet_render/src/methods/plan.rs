@@ -138,7 +138,6 @@ impl Pass {
         self
     }
 
-    /// Compile-time features of the shader.
     pub fn features(&mut self, all: impl IntoIterator<Item = &'static str>) -> &mut Self {
         self.features.extend(all);
         self
@@ -164,7 +163,6 @@ pub(crate) struct Plan<'b> {
     pub parameters: String,
     /// The exported text of a learned method's network.
     pub network: String,
-    /// In which order surfaces are drawn.
     pub order: Order,
 }
 
@@ -242,7 +240,6 @@ impl<'b> Plan<'b> {
         self.pass(shader, Draws::Surfaces).label(label)
     }
 
-    /// A compute shader.
     pub fn compute(&mut self, shader: &str, threads: u64) -> &mut Pass {
         self.pass(shader, Draws::Threads(threads))
     }

@@ -81,7 +81,6 @@ fn transmittances(
     Some(seen.iter().map(|seen| seen.weight(&guess)).collect())
 }
 
-/// What all of them have in common.
 const fn slabs(name: &'static str, about: &'static str) -> Method {
     Method {
         parameters: &[RANGE],

@@ -72,7 +72,6 @@ pub(super) const BLENDED: Method = Method {
     })
 };
 
-/// What all weights have in common.
 const fn weighted(name: &'static str, about: &'static str) -> Method {
     Method {
         parameters: &[TARGETS],

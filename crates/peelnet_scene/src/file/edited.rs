@@ -259,7 +259,6 @@ mod tests {
         .expect("reads")
     }
 
-    /// What is written reads back as what was shown.
     #[test]
     fn changes_come_back() {
         let loaded = suite::load("cups").expect("loads");

@@ -1,5 +1,3 @@
-//! A mesh file as a whole scene.
-
 use crate::{
     budget::{self, MAX_COORDINATE, MAX_LIGHTS},
     camera::{Camera, FOV_Y},

@@ -1,5 +1,3 @@
-//! Vertices and faces of PLY files.
-
 use peelnet_core::srgb;
 use ply_rs_bw::ply::{Property, PropertyAccess, PropertyAccessResult as Answer};
 
@@ -107,7 +105,6 @@ impl PropertyAccess for Face {
     }
 }
 
-/// A list of whole numbers.
 fn whole(list: Property) -> Option<Vec<i64>> {
     fn all<T: Into<i64>>(list: Vec<T>) -> Vec<i64> {
         list.into_iter().map(T::into).collect()

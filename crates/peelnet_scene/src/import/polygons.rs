@@ -1,5 +1,3 @@
-//! Triangulation of polygons.
-
 use earcut::{Earcut, utils3d::project3d_to_2d};
 use glam::DVec3;
 

@@ -42,7 +42,6 @@ pub(super) fn in_file(message: impl Into<String>) -> Fault {
     (None, message.into())
 }
 
-/// What is wrong with a position.
 pub(super) fn fault_of(position: Vec3) -> Option<String> {
     if !position.is_finite() {
         return Some("is not finite".into());

@@ -170,7 +170,6 @@ fn resample(line: &[Vec2], rings: usize) -> Vec<Vec2> {
     points
 }
 
-/// Most points of a profile.
 const MAX_POINTS: usize = 10_000;
 
 impl Lathe {

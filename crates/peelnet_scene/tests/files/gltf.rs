@@ -84,7 +84,6 @@ fn load(document: &Value) -> Result<Scene, String> {
     load_bytes(&glb(document, &square()))
 }
 
-/// Sets a value of a document by its path.
 fn set(document: &mut Value, path: &str, value: Value) {
     let mut at = document;
     for key in path.split('/') {
@@ -247,7 +246,6 @@ fn specular_and_glossiness() {
     assert_eq!(metal.texels[0], [255, 204, 255, 255]);
 }
 
-/// What a file uses and is not drawn is reported.
 #[test]
 fn what_is_not_drawn_is_reported() {
     let document = changed(

@@ -4,7 +4,6 @@ use crate::{Loaded, area, load_mesh};
 use glam::{Vec2, Vec3};
 use peelnet_scene::{Lighting, Wrap};
 
-/// An OBJ file and its library.
 fn load(obj: &str, mtl: &str) -> Loaded {
     let files = [("a.obj", obj.as_bytes()), ("a.mtl", mtl.as_bytes())];
     load_mesh(&files).unwrap()

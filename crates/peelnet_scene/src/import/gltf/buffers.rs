@@ -1,5 +1,3 @@
-//! Buffers and URIs.
-
 use super::nodes::Reader;
 use crate::{error::SceneError, files::MAX_MESH};
 use base64::{

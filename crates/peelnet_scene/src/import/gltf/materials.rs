@@ -194,7 +194,6 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// A material, and the placement of its maps.
     pub fn material(&mut self, m: &gltf::Material<'_>) -> (Material, Placement) {
         let (maps, placement) = self.maps(m);
         let pbr = m.pbr_metallic_roughness();

@@ -80,7 +80,6 @@ impl<'a, 'f> Reader<'a, 'f> {
         SceneError::file(self.path, None, message)
     }
 
-    /// Adds a scene's nodes.
     pub fn scene(&mut self, scene: &gltf::Scene<'_>) -> Result<(), SceneError> {
         let nodes = self.nodes(scene)?;
         // What they instance is counted before any of it is made.

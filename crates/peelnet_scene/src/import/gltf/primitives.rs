@@ -1,5 +1,3 @@
-//! Triangles of a mesh's primitives.
-
 use super::{
     checks::is_readable,
     nodes::{Reader, finite},
