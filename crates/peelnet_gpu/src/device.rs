@@ -34,7 +34,6 @@ pub struct Gpu {
 
 #[derive(Debug, Default)]
 pub(crate) struct Shared {
-    /// Whether an allocation did not fit the GPU's memory.
     memory_was_full: AtomicBool,
     first_error: Mutex<Option<GpuError>>,
     lost: Mutex<Option<String>>,

@@ -24,7 +24,6 @@ const CHUNK: u64 = 16 << 20;
 #[cfg(not(target_arch = "wasm32"))]
 const PATIENCE: std::time::Duration = std::time::Duration::from_secs(300);
 
-/// What a buffer's mapping came to, once it is done.
 type Mapped = oneshot::Receiver<Result<(), wgpu::BufferAsyncError>>;
 
 fn lost(reason: impl ToString) -> GpuError {

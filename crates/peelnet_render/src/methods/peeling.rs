@@ -22,7 +22,6 @@ pub(super) trait Peel: fmt::Debug + wgpu::WasmNotSend {
     /// Layers that a pass peels.
     const LAYERS: u32;
 
-    /// Records what comes before all passes.
     fn begin(&self, cx: &mut DrawContext<'_, '_>);
 
     /// Records a pass, and what it composites.

@@ -11,6 +11,7 @@ fn scene(material: Material) -> Scene {
     Scene::generated("one", "a test", [0.0; 3], camera, vec![object])
 }
 
+/// A material without effects.
 fn plain() -> Material {
     Material::unlit([0.5, 0.4, 0.5], 0.5)
 }

@@ -259,6 +259,7 @@ mod tests {
         .expect("reads")
     }
 
+    /// What is written reads back as what was shown.
     #[test]
     fn changes_come_back() {
         let loaded = suite::load("cups").expect("loads");

@@ -5,7 +5,6 @@ use glam::{Vec2, Vec3};
 use peelnet_scene::{Lighting, Scene, Source, Wrap};
 use serde_json::{Value, json};
 
-/// A GLB file of this JSON and this buffer.
 fn glb(json: &Value, buffer: &[u8]) -> Vec<u8> {
     let mut text = serde_json::to_vec(json).unwrap();
     text.resize(text.len().next_multiple_of(4), b' ');
@@ -301,7 +300,6 @@ scenes/0/nodes = [0, 0] => node 0 is a child of scene 0 and of scene 0
 nodes = [{"children": [1, 1]}, {"children": [2, 2]}, {"mesh": 0}] => node 2 is a child of node 1 and of node 1 & one parent
 "#;
 
-/// Every bad file gives one error with its place and a fix.
 #[test]
 fn bad_files() {
     for row in BAD.trim().lines() {

@@ -12,7 +12,6 @@ fn load_text(header: &str, body: &str) -> Loaded {
     load(format!("{header}{body}").as_bytes()).unwrap()
 }
 
-/// A header of these lines, in this format.
 fn header(format: &str, lines: &str) -> String {
     format!("ply\nformat {format} 1.0\ncomment by hand\n{lines}end_header\n")
 }
