@@ -182,7 +182,6 @@ pub enum ColumnSlice<'a> {
     U32(&'a [u32]),
 }
 
-/// The values of one column, for appending.
 pub(crate) enum ColumnMut<'a> {
     F32(&'a mut Vec<f32>),
     U32(&'a mut Vec<u32>),
@@ -204,7 +203,6 @@ impl FragmentBatch {
         self.truncate(0);
     }
 
-    /// Whether row `a` and row `b` belong to the same pixel.
     pub(crate) fn same_pixel(&self, a: usize, b: usize) -> bool {
         self.x[a] == self.x[b] && self.y[a] == self.y[b] && self.view[a] == self.view[b]
     }

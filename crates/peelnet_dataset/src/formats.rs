@@ -65,12 +65,10 @@ impl Format {
         }
     }
 
-    /// How many files a part has.
     pub(crate) fn files_of_a_part(self) -> usize {
         self.files_of(&Column::ALL).len()
     }
 
-    /// The names of a part's files, which begin with `stem`.
     pub(crate) fn file_names(self, stem: &str) -> Vec<String> {
         match self {
             Self::Csv | Self::Parquet => vec![format!("{stem}.{self}")],
@@ -148,7 +146,6 @@ pub(crate) trait PartSink: Send {
     fn finish(self: Box<Self>, rows: u64) -> Result<(), DatasetError>;
 }
 
-/// Reads one part's rows.
 pub(crate) trait PartSource: Send {
     /// Appends up to `max` rows to the asked columns of `rows` and says how many; 0 at the end.
     fn read(&mut self, max: usize, rows: &mut FragmentBatch) -> Result<usize, DatasetError>;

@@ -24,19 +24,16 @@ pub(crate) struct PartRecord {
     pub schema: u32,
     /// Hash of the plan that the writer followed.
     pub plan: String,
-    /// The writer's name.
     pub worker: String,
     /// The part, as it will be in the manifest.
     pub part: Part,
 }
 
 impl PartRecord {
-    /// The name of a part's record.
     pub(crate) fn name(index: u32) -> String {
         format!("{PARTS}/{index:05}.json")
     }
 
-    /// The part whose record has this name.
     pub(crate) fn index(name: &str) -> Option<u32> {
         let (_, digits) = name.strip_suffix(".json")?.rsplit_once('/')?;
         digits.parse().ok().filter(|&k| Self::name(k) == name)
@@ -81,7 +78,6 @@ impl PartRecord {
     }
 }
 
-/// The part that a file of rows belongs to, by its name.
 pub(crate) fn part_of_file(name: &str) -> Option<u32> {
     let (digits, _) = name.strip_prefix(FRAGMENTS)?.split_once('-')?;
     let index = digits.parse().ok();
@@ -113,7 +109,6 @@ pub fn seal(path: impl AsRef<Path>) -> Result<Manifest, DatasetError> {
     Ok(manifest)
 }
 
-/// The error of a place where no dataset is.
 pub(crate) fn no_manifest(path: &Path) -> DatasetError {
     let reason = "no _peelnet/manifest.json here: this is not a dataset, or its extraction was interrupted; run `peelnet extract` again";
     DatasetError::invalid(path, reason)

@@ -57,7 +57,6 @@ pub struct Header {
 }
 
 impl Header {
-    /// Refuses what no dataset has.
     pub(crate) fn check(&self, folder: &Path) -> Result<(), DatasetError> {
         let items = self.work_items;
         let reason = if items > MAX_WORK_ITEMS {
@@ -183,7 +182,6 @@ impl Plan {
         Ok((there, false))
     }
 
-    /// The manifest of these parts.
     pub(crate) fn manifest(&self, mut parts: Vec<Part>) -> Manifest {
         parts.sort_by_key(|p| p.index);
         // Records come from outside, with any numbers in them.

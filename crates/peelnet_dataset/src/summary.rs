@@ -10,7 +10,6 @@ use crate::reader::Dataset;
 
 /// Violations that are listed; the rest is counted only.
 const LISTED: usize = 20;
-/// Bins of the histogram of α.
 const ALPHA_BINS: usize = 20;
 
 /// A dataset in figures.

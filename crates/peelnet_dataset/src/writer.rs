@@ -247,7 +247,6 @@ pub struct PartWriter<'a> {
     dataset: &'a DatasetWriter,
     part: Part,
     name: PathBuf,
-    /// Of the files.
     names: Vec<String>,
     sink: Box<dyn PartSink>,
     last_pixel: Option<[u32; 2]>,

@@ -327,7 +327,6 @@ const THESIS_BEFORE: &str = "z is the distance along the view axis, in the unit 
 const DFAOIT_BEFORE: &str = "Composite the two nearest fragments of each pixel exactly, by depth peeling or insertion, into front: premultiplied colour, \
     and transmittance in alpha. The pass below draws them again, with front = true.";
 
-/// The layout of a recipe's design.
 pub(crate) fn layout(design: &Design) -> Layout {
     let layout = design.layout();
     layout.expect("recipes that are exported keep what a layout holds")

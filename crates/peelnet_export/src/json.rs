@@ -5,7 +5,6 @@ use peelnet_model::{DatasetRef, Model};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// Names the format of the file.
 pub(crate) const FORMAT: &str = "peelnet-export";
 
 /// Raised when a reader of older files would misread newer ones.
@@ -25,7 +24,6 @@ struct File<'a> {
     inputs: Vec<Input<'a>>,
     dataset: Option<&'a DatasetRef>,
     held_out: &'a BTreeMap<String, f64>,
-    /// What a renderer must do.
     #[serde(flatten)]
     description: Description,
     /// Statistics and sums have to be kept and resolved by sample: averages of samples mean nothing.

@@ -10,7 +10,6 @@ use peelnet_core::{
 };
 use peelnet_model::{BOUNDS, Input, Inputs, Model, Output};
 
-/// The exported function's name.
 pub(crate) const fn function_name(output: Output) -> &'static str {
     match output {
         Output::Color => "peelnet_color",

@@ -14,7 +14,6 @@ use peelnet_core::{
 use peelnet_model::{Inputs, Model, Output};
 use serde::Serialize;
 
-/// Points of the network.
 const POINTS: usize = 3;
 
 /// Draws until so many points are found. A network that answers 0 or 1 everywhere has none.
@@ -23,7 +22,6 @@ const DRAWS: usize = 4096;
 /// Answers that say something: neither 0 nor 1.
 const TELLING: std::ops::Range<f32> = 0.05..0.95;
 
-/// What the background is behind the four fragments.
 const BACKGROUND: [f32; 3] = [0.25, 0.5, 0.75];
 
 /// Inputs of the exported functions, and what they answer in 64 bits.

@@ -56,9 +56,6 @@ fn check_regular(metadata: &std::fs::Metadata) -> io::Result<()> {
 }
 
 /// An error if so many bytes are more than the limit.
-///
-/// # Errors
-/// If they are.
 pub fn check_size(bytes: u64, limit: u64) -> io::Result<()> {
     if bytes <= limit {
         return Ok(());

@@ -15,7 +15,6 @@ use std::{
 };
 use tempfile::NamedTempFile;
 
-/// The path that means stdout.
 pub const STDOUT: &str = "-";
 
 /// Bytes at the beginning of a file by which its kind is known.
@@ -262,7 +261,6 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// The folder that a file lies in.
 pub fn folder_of(path: &Path) -> &Path {
     match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
@@ -523,9 +521,6 @@ impl Drop for Outputs {
 }
 
 /// An error if a folder's name says stdout or is a file's, or if it cannot be written.
-///
-/// # Errors
-/// See above.
 pub fn check_is_folder(setting: &str, folder: &Path) -> Result<(), Refused> {
     let refused = if folder == Path::new(STDOUT) {
         let why = "a folder is written, which stdout cannot hold; name a folder";

@@ -180,7 +180,6 @@ pub struct Metadata {
     pub config: serde_json::Value,
 }
 
-/// Whether a file of this version can be read.
 pub(crate) fn check_version(version: u64) -> Result<(), Problem> {
     if version == u64::from(FORMAT_VERSION) {
         return Ok(());

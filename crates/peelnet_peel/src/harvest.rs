@@ -281,7 +281,6 @@ impl Harvester {
         Ok(Some(textures.map(kernel)))
     }
 
-    /// Reads a tile's runs back.
     fn read(&self, tile: &Tile, raw: &mut RawTile) -> Result<(), PeelError> {
         let (gpu, offsets) = (&self.gpu, &mut raw.offsets);
         raw.first_pixel = tile.begin;

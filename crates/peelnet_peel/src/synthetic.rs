@@ -52,7 +52,6 @@ struct World {
     slope: f32,
     /// Whether opacity falls off towards an object's rim, as in sprites.
     sprites: bool,
-    /// Whether each fragment has an opacity of its own.
     own_alpha: bool,
 }
 

@@ -78,7 +78,6 @@ impl Progress {
         }
     }
 
-    /// Writes the state's file of a run with this configuration and these rows.
     pub(crate) fn save(
         &self,
         folder: &Path,

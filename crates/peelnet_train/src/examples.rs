@@ -128,7 +128,6 @@ impl ViewWeights {
         }
     }
 
-    /// Applies the factor of a view to weights of its examples.
     pub(crate) fn apply(&self, view: usize, weights: &mut [f32]) {
         for weight in weights {
             *weight = (f64::from(*weight) * self.overall / self.views[view]) as f32;

@@ -370,7 +370,6 @@ impl Run<'_> {
         Ok(())
     }
 
-    /// The model with the parameters of `epoch`.
     fn model(&self, epoch: u32, parameters: &Tensor<1>, history: &[EpochReport]) -> Model {
         let row = (epoch as usize).checked_sub(1).and_then(|i| history.get(i));
         let held_out = row.and_then(|r| r.held_out_loss);

@@ -54,7 +54,6 @@ fn writing_fails(folder: &Path, words: &[&str]) {
 
 type Change = Box<dyn Fn(&mut Vec<u8>)>;
 
-/// Changes a line of a text.
 fn line(line: usize, edit: impl Fn(&str) -> String + 'static) -> Change {
     Box::new(move |bytes| {
         let text = std::str::from_utf8(bytes).unwrap();

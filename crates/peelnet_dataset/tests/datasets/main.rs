@@ -92,7 +92,6 @@ fn rows_of(index: u32) -> FragmentBatch {
     view(index, [700, 301, 1500, 0][index as usize], 1)
 }
 
-/// Writes the test dataset.
 fn write(folder: &Path, format: Format) -> Result<Manifest, DatasetError> {
     write_by(folder, header(format), 1000)
 }
@@ -107,7 +106,6 @@ fn write_by(folder: &Path, header: Header, batch_rows: usize) -> Result<Manifest
     writer.finish()
 }
 
-/// Writes one part, in batches of so many rows.
 fn part(
     writer: &DatasetWriter,
     index: u32,
@@ -123,7 +121,6 @@ fn part(
     part.finish(0, 0)
 }
 
-/// Writes a dataset of one part.
 fn write_one(folder: &Path, format: Format, rows: &FragmentBatch, batch_rows: usize) -> Manifest {
     let header = Header {
         work_items: 1,
@@ -173,7 +170,6 @@ fn opening_fails(folder: &Path, words: &[&str]) {
     has(&Dataset::open(folder).unwrap_err(), words);
 }
 
-/// Whether an error has these words.
 fn has(error: &DatasetError, words: &[&str]) {
     let message = error.to_string();
     for word in words {

@@ -2,7 +2,6 @@
 
 use super::*;
 
-/// A header of a worker.
 fn by(worker: &str, format: Format) -> Header {
     Header {
         worker: worker.to_owned(),
@@ -19,7 +18,6 @@ fn joining(worker: &str, format: Format, shard: Option<[u32; 2]>) -> Header {
     }
 }
 
-/// Does what is missing.
 fn resume(folder: &Path, worker: &str) -> Result<Manifest, DatasetError> {
     write_by(folder, joining(worker, Format::Csv, None), 1000)
 }
@@ -41,7 +39,6 @@ fn sealing_fails(folder: &Path, words: &[&str]) {
     assert!(!is_sealed(folder));
 }
 
-/// The manifest's bytes and those of all rows.
 fn rows_and_manifest(folder: &Path) -> Vec<(String, Vec<u8>)> {
     let mut all = contents(folder);
     all.retain(|(name, _)| name.starts_with("fragments") || name.ends_with("manifest.json"));

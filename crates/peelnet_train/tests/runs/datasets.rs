@@ -21,7 +21,6 @@ fn stacks(index: u32, layers: u32) -> FragmentBatch {
     batch
 }
 
-/// A dataset of such views.
 fn write(folder: &Path, layers: u32, scenes: Vec<SceneEntry>) -> Dataset {
     write_views(folder, SIDE, scenes, |index| stacks(index, layers))
 }

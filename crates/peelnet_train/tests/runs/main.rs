@@ -21,7 +21,6 @@ fn run(config: &Config, data: &TrainingData, out: &Path) -> Result<Outcome, Trai
     train(config, data, &RunOptions::new(out, &NEVER), |_| {})
 }
 
-/// Continues from the checkpoint.
 fn resuming(out: &Path) -> RunOptions<'static> {
     RunOptions {
         resume: true,
