@@ -129,7 +129,6 @@ impl Program {
             })
     }
 
-    /// Records a pass.
     pub fn draw(&mut self, pass: &Pass<'_>) {
         let pipeline = self.pipeline(pass);
         let attachments = pass.targets.iter().map(|target| {

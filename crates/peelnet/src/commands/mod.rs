@@ -1,5 +1,3 @@
-//! One file per command.
-
 mod bench;
 mod bench_designs;
 mod doctor;
@@ -27,7 +25,6 @@ use peelnet_scene::{Scene, SceneError, suite};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// What every command works with.
 #[derive(Clone, Copy, Debug)]
 pub struct Context<'a> {
     pub console: Console,
@@ -81,7 +78,6 @@ impl Context<'_> {
         paths.iter().map(|path| self.scene(path, None)).collect()
     }
 
-    /// A scene, at a time of its timeline.
     fn scene(&self, path: &Path, time: Option<f32>) -> Result<Scene, Failure> {
         if path.is_file() {
             self.say_not_shipped("file", path);

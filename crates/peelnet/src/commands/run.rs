@@ -147,7 +147,6 @@ impl Run<'_> {
         self.context.check_interrupt()
     }
 
-    /// The size of frames for people.
     fn size(&self) -> String {
         format!("{}x{}", self.frame[0], self.frame[1])
     }
@@ -336,7 +335,6 @@ impl Run<'_> {
     }
 }
 
-/// The table and the findings.
 fn text(results: &Results<ThesisRun>) -> String {
     let findings = results.measured.findings.iter();
     let findings: String = findings.map(|f| format!("- {f}\n")).collect();

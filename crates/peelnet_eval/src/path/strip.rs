@@ -5,7 +5,6 @@ use image::{Rgba, Rgba32FImage, imageops};
 use peelnet_core::srgb;
 use peelnet_render::Image;
 
-/// Frames of a strip.
 const FRAMES: usize = 6;
 
 /// The width of one frame in a strip, pixels, at most.
@@ -17,9 +16,7 @@ const MAGNIFIED: f32 = 8.0;
 /// Frames at even distances: of the exact video the frames, of a method the error image and, below it, its change since the frame before,
 /// both magnified by 8. Of a method, the frame of the largest change stands at the end: what pops does so between two frames.
 pub(crate) struct Strip {
-    /// Size of a frame.
     size: [u32; 2],
-    /// Frames of the video.
     frames: usize,
     /// From left to right, in linear light.
     columns: Vec<Rgba32FImage>,
@@ -37,7 +34,6 @@ impl Strip {
         }
     }
 
-    /// Whether the frame with this number is shown.
     fn shows(&self, number: usize) -> bool {
         let shown = FRAMES.min(self.frames);
         (0..shown).any(|k| k * self.frames / shown == number)
@@ -54,7 +50,6 @@ impl Strip {
         }
     }
 
-    /// Adds an error image and its change.
     pub fn add_errors(&mut self, number: usize, errors: &[[f32; 3]], change: Option<&[[f32; 3]]>) {
         let amount = change.map_or(0.0, mean_absolute);
         let is_worst = amount > self.worst.as_ref().map_or(0.0, |(most, _)| *most);
