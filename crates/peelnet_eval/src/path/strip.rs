@@ -16,7 +16,9 @@ const MAGNIFIED: f32 = 8.0;
 /// Frames at even distances: of the exact video the frames, of a method the error image and, below it, its change since the frame before,
 /// both magnified by 8. Of a method, the frame of the largest change stands at the end: what pops does so between two frames.
 pub(crate) struct Strip {
+    /// Size of a frame.
     size: [u32; 2],
+    /// Frames of the video.
     frames: usize,
     /// From left to right, in linear light.
     columns: Vec<Rgba32FImage>,
