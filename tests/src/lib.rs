@@ -79,14 +79,12 @@ pub fn assert_near<const N: usize>(
     assert!(near, "{what}: {found:?} for {want:?}, bound {bound:e}");
 }
 
-/// The same of every pixel.
 pub fn assert_all<const N: usize>(image: &Image, want: [f32; N], bound: f32, what: impl Display) {
     for (pixel, i) in image.pixels.iter().zip(0..) {
         assert_near(*pixel, want, bound, format_args!("{what}, pixel {i}"));
     }
 }
 
-/// The same of two images.
 pub fn assert_alike(found: &[[f32; 4]], want: &[[f32; 4]], bound: f32, what: impl Display) {
     assert_eq!(found.len(), want.len(), "{what}");
     for (i, (found, want)) in found.iter().zip(want).enumerate() {
@@ -109,7 +107,6 @@ pub fn even(texel: [u8; 4]) -> Option<Arc<Texture>> {
     Some(Arc::new(Texture::of("even", [4, 4], |_, _| texel)))
 }
 
-/// A point light.
 pub fn light(position: Vec3, color: [f32; 3]) -> Light {
     Light {
         source: Source::Point(position),

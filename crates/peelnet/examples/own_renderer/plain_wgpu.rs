@@ -64,7 +64,6 @@ pub struct Pass<'a> {
     pub instances: u32,
     /// Textures that the shader reads, by binding.
     pub reads: &'a [(u32, &'a Target)],
-    /// Textures that it draws into.
     pub targets: &'a [&'a Target],
 }
 

@@ -1,5 +1,3 @@
-//! `peelnet extract` and `peelnet seal`: scenes into a dataset.
-
 use super::{Context, command_line, json_path};
 use crate::cli::{ExtractArgs, SealArgs};
 use crate::progress::Bar;

@@ -53,7 +53,6 @@ impl Context<'_> {
         Outputs::new(("--force", self.global.force), inputs)
     }
 
-    /// The files of a measurement and its pictures in a folder.
     fn results(&self, outputs: &mut Outputs, out: &Path, files: &[&str]) -> Result<(), Failure> {
         let files = files.iter().map(|name| (name, kind_of(name)));
         outputs.folder("--out", out, files)?;

@@ -219,7 +219,6 @@ impl Run<'_> {
         Ok((outcome, loss))
     }
 
-    /// Exports the model as shader text, which the comparison draws with.
     fn export(&mut self, model: &Model) -> Result<LearnedWeight, Failure> {
         let path = self.args.out.join("model.wgsl");
         let options = peelnet_export::Options::default();
