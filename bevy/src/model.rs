@@ -5,12 +5,9 @@ use bevy::render::render_resource::TextureFormat;
 use serde::Deserialize;
 use std::{borrow::Cow, fs, path::Path};
 
-/// The value of `format` in every description.
 const FORMAT: &str = "peelnet-export";
-/// The version of the description that this crate reads.
 const FORMAT_VERSION: u32 = 1;
 
-/// How a target combines what fragments write.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
 #[serde(rename_all = "lowercase")]
 pub(crate) enum Blend {

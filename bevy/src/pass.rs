@@ -39,7 +39,6 @@ pub(crate) type DrawLearned = (
     DrawMesh,
 );
 
-/// Draws a view's weighed surfaces.
 pub(crate) fn learned_transparent_pass(
     world: &World,
     view: ViewQuery<(

@@ -122,7 +122,6 @@ impl Materials<'_> {
 /// Frames without transparent surfaces before that is said: meshes and materials take some to load.
 const FRAMES_TO_LOAD: u32 = 60;
 
-/// Lends the items that can be weighed.
 pub(crate) fn lend_items(
     setup: Option<Res<Setup>>,
     messages: Res<PeelnetMessages>,

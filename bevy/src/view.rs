@@ -41,7 +41,6 @@ pub(crate) struct Targets {
     pub resolve_group: BindGroup,
 }
 
-/// The state of all views.
 #[derive(Default, Resource)]
 pub(crate) struct LearnedViews(pub HashMap<RetainedViewEntity, LearnedView>);
 

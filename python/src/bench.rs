@@ -35,7 +35,6 @@ fn compared(named: Option<Vec<String>>, models: Vec<peelnet::Model>) -> PyResult
     Ok(compared)
 }
 
-/// Measures methods by the rest of a plan.
 fn measured<'py>(
     py: Python<'py>,
     scenes: &[peelnet::Scene],

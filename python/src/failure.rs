@@ -13,12 +13,10 @@ pyo3::create_exception!(
      ValueError instead, which the command line reports with exit code 2."
 );
 
-/// A wrong value.
 pub fn wrong(text: impl Into<String>) -> PyErr {
     raised(Failure::wrong(text))
 }
 
-/// Something that failed.
 pub fn failed(text: impl Into<String>) -> PyErr {
     raised(Failure::failed(text))
 }

@@ -32,7 +32,6 @@ pub fn sampled(samples: u32) -> PyResult<u32> {
     }
 }
 
-/// A method's name with its parameters.
 pub fn method(name: &str) -> PyResult<MethodSpec> {
     name.parse().map_err(raised)
 }

@@ -1,5 +1,3 @@
-//! Scenes and cameras.
-
 use crate::{
     argument::{FromFile, load_all},
     failure::{raised, warn, wrong},
@@ -255,7 +253,6 @@ impl FromFile for Scene {
     }
 }
 
-/// The scenes of an argument.
 pub fn loaded(scenes: &Bound<'_, PyAny>) -> PyResult<Vec<peelnet::Scene>> {
     let scenes = load_all::<Scene>(scenes)?.into_iter();
     Ok(scenes.map(|s| Arc::unwrap_or_clone(s.scene)).collect())

@@ -1,5 +1,3 @@
-//! Training, with a callback each epoch.
-
 use crate::{
     argument::load_all,
     failure::{raised, wrong},

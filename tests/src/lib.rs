@@ -1,4 +1,5 @@
 //! What the tests share: one way to open a GPU, scenes with known answers, and the judge's view of a scene.
+#![allow(missing_docs, reason = "only tests use it")]
 
 pub mod readers;
 
@@ -20,7 +21,6 @@ pub fn gpu() -> Gpu {
         .unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// The network that ships for a recipe.
 pub fn shipped(recipe: Recipe) -> Model {
     Model::shipped(recipe).unwrap_or_else(|e| panic!("{e}"))
 }
@@ -40,7 +40,6 @@ pub fn representatives() -> Vec<MethodSpec> {
     drawn.map(MethodSpec::representative).collect()
 }
 
-/// Methods by their names.
 pub fn specs<const N: usize>(names: [&str; N]) -> Vec<MethodSpec> {
     let spec = |name: &str| name.parse().unwrap_or_else(|e| panic!("{e}"));
     names.map(spec).to_vec()
@@ -62,7 +61,6 @@ pub fn frame(gpu: &Gpu, scene: &Scene, method: impl Display, options: MethodOpti
     frame.unwrap_or_else(|e| panic!("{method}: {e}"))
 }
 
-/// A method, or its name, made ready for a scene.
 pub fn prepare(renderer: &Renderer, method: impl Display, size: [u32; 2]) -> Prepared {
     let spec = method.to_string().parse();
     let prepared = spec.and_then(|spec| renderer.method(&spec, MethodOptions::sized(size)));
@@ -81,14 +79,12 @@ pub fn assert_near<const N: usize>(
     assert!(near, "{what}: {found:?} for {want:?}, bound {bound:e}");
 }
 
-/// The same of every pixel.
 pub fn assert_all<const N: usize>(image: &Image, want: [f32; N], bound: f32, what: impl Display) {
     for (pixel, i) in image.pixels.iter().zip(0..) {
         assert_near(*pixel, want, bound, format_args!("{what}, pixel {i}"));
     }
 }
 
-/// The same of two images.
 pub fn assert_alike(found: &[[f32; 4]], want: &[[f32; 4]], bound: f32, what: impl Display) {
     assert_eq!(found.len(), want.len(), "{what}");
     for (i, (found, want)) in found.iter().zip(want).enumerate() {
@@ -107,12 +103,10 @@ pub fn run_text<T: bytemuck::Pod>(
         .unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// A texture of one colour.
 pub fn even(texel: [u8; 4]) -> Option<Arc<Texture>> {
     Some(Arc::new(Texture::of("even", [4, 4], |_, _| texel)))
 }
 
-/// A point light.
 pub fn light(position: Vec3, color: [f32; 3]) -> Light {
     Light {
         source: Source::Point(position),
@@ -148,7 +142,6 @@ pub fn half_sums(n: usize, peak: f32) -> f32 {
     (n as f32 + 2.0) * HALF * peak
 }
 
-/// The two triangles of a quad.
 pub fn quad([a, b, c, d]: [Vec3; 4]) -> [[Vec3; 3]; 2] {
     [[a, b, c], [a, c, d]]
 }
@@ -159,7 +152,6 @@ pub fn rectangle(x: [f32; 2], y: [f32; 2], z: f32) -> [[Vec3; 3]; 2] {
     quad([vertex(0, 0), vertex(1, 0), vertex(1, 1), vertex(0, 1)])
 }
 
-/// Triangles of one material.
 pub fn object(triangles: &[[Vec3; 3]], material: Material) -> Object {
     Object::of_triangles("test", triangles, material)
 }
@@ -191,7 +183,6 @@ pub fn wall(z: f32, material: Material) -> Object {
     wall
 }
 
-/// A scene of these objects.
 pub fn scene(name: &str, background: [f32; 3], objects: Vec<Object>) -> Scene {
     Scene::generated(name, "a test", background, camera(), objects)
 }

@@ -16,7 +16,6 @@ use tempfile::TempDir;
 /// The name of a fuzz target, what it does with any bytes, and files to begin from: sound ones, and some that are nearly so.
 pub type Reader = (&'static str, fn(&[u8]), fn() -> Vec<Vec<u8>>);
 
-/// All of them.
 pub const READERS: [Reader; 7] = [
     (
         "scene",
@@ -105,7 +104,6 @@ fn obj(bytes: &[u8]) {
     load("f.obj", mesh);
 }
 
-/// Where a dataset's manifest lies.
 const MANIFEST: &str = "_peelnet/manifest.json";
 
 /// A dataset of two parts: the first byte says which of its files the others replace, and in which format.
@@ -149,7 +147,6 @@ fn template_folder(kind: usize) -> PathBuf {
     folder().join(format!("template-{}", FORMATS[kind]))
 }
 
-/// Files by their names.
 type Files = Vec<(String, Vec<u8>)>;
 
 /// The files of a small dataset of one of these formats; the manifest first.
@@ -177,7 +174,6 @@ fn template(kind: usize) -> &'static Files {
     })
 }
 
-/// A model file.
 fn model(bytes: &[u8]) {
     if let Ok(model) = Model::from_bytes(bytes, "m.safetensors") {
         // What was let through answers, whatever it is asked.

@@ -12,7 +12,6 @@ use peelnet_scene::{Material, Object, Scene};
 use peelnet_tests::{even, gpu, object, quad, scene, specs};
 use std::sync::Arc;
 
-/// Pixels of a side of the frame.
 const SIDE: u32 = 16;
 
 /// Two triangles that cover these columns and rows, at the depth `z[0]` on the left and `z[1]` on the right; counter-clockwise as seen.

@@ -44,7 +44,6 @@ fn committed_texts_are_what_is_exported_today() {
 /// The GPU computes in 32 bits what the self-test computed in 64: logarithms, exponentials and sums of four.
 const SOME_ROUNDINGS: f32 = 1e-4;
 
-/// The channels of a target, and their type.
 fn channels(target: &Target) -> (usize, &'static str) {
     match target.format.split(|c: char| c.is_ascii_digit()).next() {
         Some("r") => (1, "f32"),

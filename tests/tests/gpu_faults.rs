@@ -1,5 +1,3 @@
-//! A GPU whose memory is full, and one that goes away.
-
 use peelnet_core::fragment::Fragment;
 use peelnet_gpu::{Gpu, GpuError};
 use peelnet_peel::{Peel, harvest::Harvester, rows::RawTile};

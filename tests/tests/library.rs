@@ -110,7 +110,6 @@ fn drawn_over(
     (status, gpu.read_texture(&view).unwrap())
 }
 
-/// The image of the first view.
 fn image(renderer: &Renderer, method: &mut Prepared) -> Image {
     let frame = renderer.image(method, &renderer.scene().views[0]);
     frame.unwrap().image

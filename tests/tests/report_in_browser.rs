@@ -6,7 +6,6 @@ use peelnet_report::Results;
 use peelnet_tests::{gpu, specs, walls};
 use std::{path::Path, process::Command};
 
-/// Writes the report of a small bench of two scenes.
 fn write_report(folder: &Path) {
     let gpu = gpu();
     let methods = specs(["painter-object:sort=off", "mboit4", "wboit-eq9"]);

@@ -219,7 +219,6 @@ fn stained_glass_tints_what_is_behind_it() {
     }
 }
 
-/// Colours of three layers.
 const LAYERS: [[f32; 3]; 3] = [[0.9, 0.1, 0.0], [0.0, 0.8, 0.2], [0.1, 0.3, 1.0]];
 
 /// Walls of these layers, one behind another.

@@ -7,7 +7,6 @@ use crate::{
 };
 use std::{env, path::PathBuf, process::Command, time::Instant};
 
-/// A step's name and what it does.
 pub type Step = (&'static str, fn() -> Outcome);
 
 /// What every change may break.

@@ -97,7 +97,6 @@ fn main() -> ExitCode {
     }
 }
 
-/// Where cargo builds.
 fn target_folder() -> PathBuf {
     env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), Into::into)
 }

@@ -62,7 +62,6 @@ const RECIPES: [(&str, &str); 8] = [
     ),
 ];
 
-/// The languages of exported texts, and how their files end.
 const LANGUAGES: [(&str, &str); 5] = [
     ("wgsl", "wgsl"),
     ("glsl-es", "es.glsl"),

@@ -3,7 +3,6 @@
 use crate::{Outcome, answers, captured, command, run};
 use std::{env, path::Path};
 
-/// Makes sure that a subcommand of cargo is there.
 pub fn ensure_subcommand(name: &str) -> Outcome {
     ensure(&format!("cargo {name} --version"), &format!("cargo-{name}"))
 }

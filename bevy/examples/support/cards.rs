@@ -98,7 +98,6 @@ pub fn material(color: LinearRgba) -> StandardMaterial {
     }
 }
 
-/// Adds a card of a material to an application.
 pub fn spawn_of<M: Material>(app: &mut App, card: &Card, material: M) -> Entity {
     let world = app.world_mut();
     let mesh = Rectangle::new(1.0, 1.0);

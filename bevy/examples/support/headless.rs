@@ -25,7 +25,6 @@ use std::sync::{
 
 /// Frames after which all pipelines are there: Bevy's come in one frame, ours a frame later, and a shader may come late.
 const FRAMES_TO_SETTLE: u32 = 8;
-/// Frames that reading back may take.
 const FRAMES_TO_READ: u32 = 100;
 
 static LOGGED: AtomicBool = AtomicBool::new(false);

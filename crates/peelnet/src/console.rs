@@ -72,7 +72,6 @@ impl Console {
     }
 }
 
-/// The last line of a command that failed.
 pub fn error(text: &str) {
     to_stderr("error: ", text);
 }

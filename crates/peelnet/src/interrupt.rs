@@ -58,7 +58,6 @@ fn end() -> ! {
     std::process::exit(code.into());
 }
 
-/// What an interrupted command says.
 pub const MESSAGE: &str = "interrupted; files that were not finished are gone";
 
 /// 128 and the number of the signal that came: 130 for SIGINT, 143 for SIGTERM.

@@ -1,5 +1,3 @@
-//! A dataset's summary as text.
-
 use peelnet_dataset::Summary;
 use peelnet_dataset::summary::Bin;
 use peelnet_files::{Kind, printable, thousands};

@@ -33,10 +33,8 @@ pub fn fraction(text: &str) -> Result<f64, String> {
         .ok_or_else(|| format!("'{text}' is not a fraction; write a number above 0 and up to 1"))
 }
 
-/// Samples a pixel.
 pub const SAMPLES: [(&str, u32); 2] = [("1", 1), ("4", 4)];
 
-/// A positive number.
 pub fn positive(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(x) if x > 0.0 && x.is_finite() => Ok(x),

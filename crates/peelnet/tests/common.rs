@@ -1,5 +1,3 @@
-//! What the tests of the program share.
-
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::ffi::OsStr;
@@ -51,7 +49,6 @@ material = { color = [0.1, 0.2, 0.9], alpha = 0.7, lighting = "unlit" }
 pub struct Folder(tempfile::TempDir);
 
 impl Folder {
-    /// A folder with these files.
     pub fn new(files: &[(&str, &str)]) -> Self {
         let folder = Self(tempfile::tempdir().unwrap());
         for (name, text) in files {
@@ -83,13 +80,11 @@ impl Folder {
         model.save(self.at(name)).unwrap();
     }
 
-    /// The program with the words of a line.
     pub fn command(&self, line: &str) -> Command {
         let words: Vec<&str> = line.split_whitespace().collect();
         self.command_of(&words)
     }
 
-    /// The program with these arguments.
     pub fn command_of<A: AsRef<OsStr>>(&self, arguments: &[A]) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_peelnet"));
         command.args(arguments).current_dir(self.path());
@@ -110,7 +105,6 @@ impl Folder {
         text
     }
 
-    /// What a command line that is done printed.
     pub fn prints(&self, line: &str) -> String {
         let output = self.command(line).output().unwrap();
         let text = String::from_utf8_lossy(&output.stderr);
@@ -118,7 +112,6 @@ impl Folder {
         String::from_utf8(output.stdout).unwrap()
     }
 
-    /// The answer of a command line with `--json`.
     pub fn json(&self, line: &str) -> Value {
         serde_json::from_str(&self.prints(&format!("{line} --json"))).unwrap()
     }

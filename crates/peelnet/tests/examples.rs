@@ -3,7 +3,6 @@
 use crate::common::Folder;
 use std::process::Command;
 
-/// Runs an example in a folder and returns what it printed.
 fn example(folder: &Folder, name: &str, arguments: &[&str]) -> String {
     // Examples lie beside the folder of tests.
     let tests = std::env::current_exe().unwrap();

@@ -3,7 +3,6 @@
 use crate::common::{Folder, SCENE};
 use std::process::Stdio;
 
-/// The command ends with one error, which has these words.
 fn fails(folder: &Folder, line: &str, words: &[&str]) {
     let text = folder.says(line, 1);
     assert_eq!(text.matches("error: ").count(), 1, "{line}: {text}");

@@ -32,7 +32,6 @@ fn holds_hidden(folder: &Folder) -> bool {
     folder.everything().keys().any(|path| is_hidden(path))
 }
 
-/// Whether a PNG file is complete.
 fn is_whole(png: &[u8]) -> bool {
     png.ends_with(b"IEND\xaeB`\x82")
 }

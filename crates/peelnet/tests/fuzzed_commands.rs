@@ -41,7 +41,6 @@ const NAMES: &str = "s.toml a.obj notes.txt photo.png curve.svg table.csv f g f/
 const VALUES: &str =
     "1 0 -1 2 8x8 all 1e30 nan 4294967295 99999999999999999999 csv npy thesis mboit4:bias=1e-6";
 
-/// Loss curves.
 const CURVES: &str =
     "loss.csv curve.svg table.csv new.svg d/_peelnet/manifest.json m.safetensors -";
 

@@ -3,7 +3,6 @@
 use crate::common::{Folder, SPHERES, rows_of};
 use serde_json::Value;
 
-/// The sum of a figure over the rows of a method.
 fn sum(answer: &Value, method: &str, figure: &str) -> f64 {
     let rows = rows_of(answer, method).into_iter();
     rows.map(|row| row[figure].as_f64().unwrap()).sum()

@@ -21,7 +21,6 @@ pub struct Shared {
     pub module: Option<&'static str>,
 }
 
-/// A feature's name, unit and twin in WGSL.
 #[derive(Debug, PartialEq, Eq)]
 pub struct About {
     /// Name in the model file, and of the parameter of the exported function.

@@ -1,6 +1,5 @@
 //! One surface seen through one pixel, and the order of several.
 
-/// A transparent fragment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fragment {
     /// Linear depth `z`: distance along the view axis, positive, in scene units.

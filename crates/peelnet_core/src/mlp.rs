@@ -8,7 +8,6 @@ use num_traits::Float;
 use serde::{Deserialize, Serialize};
 use std::iter::Sum;
 
-/// The function applied after a layer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Activation {

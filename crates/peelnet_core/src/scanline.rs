@@ -6,7 +6,6 @@
 //! GPU differs where an edge passes within its snapping distance of a pixel centre; [`stable_pixels`] are
 //! all others.
 
-/// A triangle in clip space with what its fragments carry.
 #[derive(Clone, Copy, Debug)]
 pub struct Triangle {
     /// Clip-space vertices `(x, y, z, w)`, depth range 0 ≤ z ≤ w.

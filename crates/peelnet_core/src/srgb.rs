@@ -14,12 +14,10 @@ pub fn encode(linear: f32) -> f32 {
     }
 }
 
-/// The byte that an 8-bit image stores for linear light.
 pub fn encode8(linear: f32) -> u8 {
     (encode(linear) * 255.0).round() as u8
 }
 
-/// What is stored as linear light.
 pub fn decode(stored: f32) -> f32 {
     if stored <= 0.04045 {
         stored / 12.92

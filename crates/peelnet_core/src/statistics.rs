@@ -107,7 +107,6 @@ impl EndCode {
     }
 }
 
-/// How the sums are kept.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum SumPrecision {
     #[default]
@@ -117,7 +116,6 @@ pub enum SumPrecision {
 }
 
 impl SumPrecision {
-    /// A sum with one more term.
     pub(crate) fn add(self, sum: f64, term: f64) -> f64 {
         let half = |x: f64| f64::from(half::f16::from_f64(x));
         match self {
@@ -137,7 +135,6 @@ pub struct Statistics {
 }
 
 impl Statistics {
-    /// The moments of a pixel's fragments.
     pub fn moments(fragments: &[Point], precision: SumPrecision) -> [f64; 5] {
         let mut moments = [0.0; 5];
         for &(b, zeta, _) in fragments {

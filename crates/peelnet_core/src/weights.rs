@@ -53,8 +53,6 @@ impl Weight {
         }
     }
 
-    /// The weight of a fragment.
-    ///
     /// `z` is linear depth in scene units, `alpha` opacity, `window_depth` 0 … 1.
     pub fn eval(self, z: f32, alpha: f32, window_depth: f32) -> f32 {
         match self {

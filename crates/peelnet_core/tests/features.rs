@@ -11,7 +11,6 @@ fn near(found: f64, want: f64) {
     assert!((found - want).abs() < TOLERANCE, "{found} for {want}");
 }
 
-/// Absorbance and its moments of layers.
 fn moments(layers: &[(f64, f64)]) -> [f64; 5] {
     std::array::from_fn(|k| layers.iter().map(|&(b, z)| b * z.powi(k as i32)).sum())
 }

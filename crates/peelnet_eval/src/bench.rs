@@ -13,7 +13,6 @@ use peelnet_model::Model;
 use peelnet_scene::Scene;
 use std::sync::atomic::AtomicBool;
 
-/// The scenes that some of the models were trained on.
 pub fn trained_on<'a>(
     scenes: &[Scene],
     models: impl IntoIterator<Item = &'a Model>,

@@ -22,7 +22,6 @@ pub const EXACT: &str = role::REFERENCE;
 
 #[derive(Clone, Debug)]
 pub struct Plan<'a> {
-    /// Width and height of every frame, pixels.
     pub size: [u32; 2],
     /// Samples a pixel, 1 or 4, of all methods and of the exact image that judges them.
     pub samples: u32,
@@ -289,7 +288,6 @@ fn medians_by_pass(frames: &[Vec<PassTime>]) -> String {
     parts.collect::<Vec<_>>().join(" ")
 }
 
-/// What a frame and its differences from the exact image hold.
 fn row(frame: &Frame, exact: &[[f32; 4]]) -> Row {
     let (d, stats) = (differences(exact, &frame.image.pixels), &frame.stats);
     let passes = stats.geometry_passes + stats.fullscreen_passes;

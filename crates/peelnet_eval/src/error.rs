@@ -5,23 +5,19 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// What can go wrong when methods are measured.
 #[derive(Debug, thiserror::Error)]
 pub enum EvalError {
-    /// What failed with a file, a scene or a method.
     #[error("{place}: {source}")]
     At {
         place: String,
         source: Box<dyn Error + Send + Sync>,
     },
-    /// A scene of the suite could not be loaded.
     #[error(transparent)]
     Scene(#[from] peelnet_scene::SceneError),
     #[error("the video metric: {0}")]
     Video(#[from] colorvideovdp::Error),
     #[error("{}: cannot resume: {why}", path.display())]
     Resume { path: PathBuf, why: String },
-    /// Rows and pictures could not be assigned to their scene.
     #[error("two scenes are named '{name}' ({} and {}): rename one, because rows and pictures name their scene", first.display(), second.display())]
     SameName {
         name: String,
@@ -31,13 +27,11 @@ pub enum EvalError {
     /// Anything else that cannot be measured: a path that is too long, a file of designs.
     #[error("{0}")]
     Unusable(String),
-    /// The user asked to stop.
     #[error("interrupted")]
     Interrupted,
 }
 
 impl EvalError {
-    /// For `map_err`.
     pub(crate) fn at<E: Error + Send + Sync + 'static>(place: String) -> impl FnOnce(E) -> Self {
         |source| Self::At {
             place,
@@ -45,12 +39,10 @@ impl EvalError {
         }
     }
 
-    /// For `map_err` on file operations.
     pub(crate) fn io(path: &Path, action: &str) -> impl FnOnce(std::io::Error) -> Self + use<> {
         Self::at(format!("{}: cannot {action}", path.display()))
     }
 
-    /// For `map_err` on drawing a scene with a method.
     pub(crate) fn render(scene: &str, method: &str) -> impl FnOnce(RenderError) -> Self + use<> {
         Self::at(format!("scene '{scene}', method '{method}'"))
     }

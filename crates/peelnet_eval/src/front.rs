@@ -130,7 +130,6 @@ mod tests {
     use super::*;
     use crate::rows::tests::row;
 
-    /// The points of these methods with their errors and times on two scenes.
     fn points_of(of: &[(&str, f64, f64)], kind: Mean) -> Vec<Point> {
         let mut rows = Vec::new();
         for (k, scene) in ["a", "b"].into_iter().enumerate() {

@@ -3,7 +3,6 @@ use peelnet_gpu::Gpu;
 use sysinfo::{CpuRefreshKind, MemoryRefreshKind, RefreshKind, System};
 
 impl Machine {
-    /// This machine, with an open device.
     pub fn of(gpu: &Gpu) -> Self {
         let system = System::new_with_specifics(
             RefreshKind::nothing()

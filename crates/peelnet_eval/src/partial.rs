@@ -13,7 +13,6 @@ const MAX_BYTES: u64 = 1 << 28;
 #[derive(Debug)]
 pub struct Partial {
     kept: Kept,
-    /// Where it is kept, if anywhere.
     path: Option<PathBuf>,
 }
 

@@ -153,7 +153,6 @@ pub(crate) mod tests {
     use super::*;
     use crate::front::BASE;
 
-    /// A row with little but an error.
     pub(crate) fn row(scene: &str, view: u32, method: &str, mse255: f64) -> Row {
         Row {
             method: method.to_owned(),

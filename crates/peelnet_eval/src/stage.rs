@@ -84,7 +84,6 @@ pub(crate) fn camera([near, far]: [f32; 2]) -> Camera {
     }
 }
 
-/// Two triangles.
 pub(crate) fn quad([a, b, c, d]: [Vec3; 4]) -> [[Vec3; 3]; 2] {
     [[a, b, c], [a, c, d]]
 }

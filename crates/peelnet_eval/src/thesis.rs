@@ -22,10 +22,8 @@ pub fn line(scene: &str) -> Option<[f64; 2]> {
     found.map(|(_, errors)| errors)
 }
 
-/// Method name of weighted blending with the thesis's own weight.
 pub const WEIGHTED: &str = role::THESIS_WEIGHT;
 
-/// Method name of weighted blending with the thesis's network.
 pub const DEEP: &str = role::THESIS_NETWORK;
 
 /// A mean of a method over the views of a scene.

@@ -76,7 +76,6 @@ impl<'a> Peeled<'a> {
             .map_err(EvalError::at(format!("scene '{}'", self.scene.name)))
     }
 
-    /// The fragments of a view's sampled pixels.
     pub fn stacks(&mut self, view: usize) -> Result<Stacks, EvalError> {
         let sample = PixelSample {
             seed: 0,

@@ -1,6 +1,5 @@
 use std::path::{Path, PathBuf};
 
-/// A file of results that could not be written or read.
 #[derive(Debug, thiserror::Error)]
 #[error("{}: {what}: {source}", path.display())]
 pub struct ReportError {
@@ -10,7 +9,6 @@ pub struct ReportError {
 }
 
 impl ReportError {
-    /// For `map_err`: what failed with a file.
     pub(crate) fn of<E>(path: &Path, what: &'static str) -> impl FnOnce(E) -> Self
     where
         E: std::error::Error + Send + Sync + 'static,

@@ -6,7 +6,6 @@ use peelnet_chart::Svg;
 use peelnet_eval::Machine;
 use peelnet_files::printable_lines;
 
-/// Says in a page who wrote it.
 pub(crate) const GENERATOR_TAG: &str = "<meta name=\"generator\" content=\"peelnet\">";
 
 const STYLE: &str = include_str!("page.css");

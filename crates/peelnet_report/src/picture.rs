@@ -1,5 +1,3 @@
-//! Pictures inside a page.
-
 use crate::ReportError;
 use base64::{Engine as _, engine::general_purpose::STANDARD};
 use image::{DynamicImage, ImageFormat, imageops::FilterType};

@@ -49,7 +49,6 @@ impl<T> Results<T> {
 }
 
 impl<T: Measurement> Results<T> {
-    /// Names of the files that [`Self::write`] writes.
     pub fn files() -> Vec<&'static str> {
         T::FILES.iter().map(|(name, _)| *name).collect()
     }
@@ -69,7 +68,6 @@ impl<T: Measurement> Results<T> {
         Ok(())
     }
 
-    /// The results as indented JSON.
     pub(crate) fn json(&self, _: &Path) -> Result<String, ReportError> {
         let json = serde_json::to_string_pretty(self)
             .expect("results have string keys only, and floats serialise always");

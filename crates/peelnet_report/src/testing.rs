@@ -1,5 +1,3 @@
-//! A machine and rows for tests.
-
 use crate::{Measurement, Results};
 use peelnet_eval::{Machine, Row};
 use serde::de::DeserializeOwned;
@@ -13,7 +11,6 @@ pub(crate) fn machine() -> Machine {
     }
 }
 
-/// A row with little but an error.
 pub(crate) fn row(scene: &str, method: &str, mse255: f64) -> Row {
     Row {
         method: method.to_owned(),

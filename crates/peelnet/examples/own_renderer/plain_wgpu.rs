@@ -64,7 +64,6 @@ pub struct Pass<'a> {
     pub instances: u32,
     /// Textures that the shader reads, by binding.
     pub reads: &'a [(u32, &'a Target)],
-    /// Textures that it draws into.
     pub targets: &'a [&'a Target],
 }
 
@@ -129,7 +128,6 @@ impl Program {
             })
     }
 
-    /// Records a pass.
     pub fn draw(&mut self, pass: &Pass<'_>) {
         let pipeline = self.pipeline(pass);
         let attachments = pass.targets.iter().map(|target| {

@@ -1,5 +1,3 @@
-//! The declaration of the command line.
-
 use super::*;
 use clap::CommandFactory as _;
 

@@ -79,7 +79,6 @@ pub(super) fn report<T: Measurement>(
     context.console.result(|| text(&results), || json!(results))
 }
 
-/// The files and the pictures that a bench of any kind writes.
 fn outputs(context: &Context<'_>, args: &BenchArgs, files: &[&str]) -> Result<Outputs, Failure> {
     let mut outputs = context.outputs(args.scenes.iter().chain(&args.models));
     context.results(&mut outputs, &args.out, files)?;
@@ -87,10 +86,7 @@ fn outputs(context: &Context<'_>, args: &BenchArgs, files: &[&str]) -> Result<Ou
 }
 
 /// Shows the frames of a comparison on a bar of this name, and warns of methods that are left out.
-pub(super) fn show<'a>(
-    context: &'a Context<'_>,
-    name: &'static str,
-) -> impl FnMut(Progress) + 'a {
+pub(super) fn show<'a>(context: &'a Context<'_>, name: &'static str) -> impl FnMut(Progress) + 'a {
     let bar = Bar::new(context.console, name, 0);
     move |event| match event {
         Progress::Drawn { done, total, what } => bar.set(done, total, what),
@@ -98,7 +94,6 @@ pub(super) fn show<'a>(
     }
 }
 
-/// How time and memory grow.
 fn scale(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure> {
     let mut outputs = outputs(context, args, &Results::<Scaling>::files())?;
     context.begin(&mut outputs, &[])?;
@@ -116,7 +111,6 @@ fn scale(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure> {
     report(context, &gpu, &args.out, scaling, |r| r.table().plain())
 }
 
-/// What effects cost.
 fn measure_effects(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure> {
     let mut outputs = outputs(context, args, &Results::<Effects>::files())?;
     let scenes = if args.scenes.is_empty() {
@@ -148,7 +142,6 @@ fn measure_effects(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failur
     })
 }
 
-/// Methods along a camera path, with moving objects.
 fn along_path(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure> {
     if args.frames == 0 {
         return Err(Failure::wrong("--frames 0: a path has at least one frame"));

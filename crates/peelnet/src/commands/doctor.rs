@@ -1,5 +1,3 @@
-//! `peelnet doctor`: adapters, features, what will be used and why.
-
 use super::Context;
 use peelnet::Failure;
 use peelnet_files::error_line;

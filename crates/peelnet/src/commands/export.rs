@@ -1,5 +1,3 @@
-//! `peelnet export`: weights into shader code.
-
 use super::{Context, json_path};
 use crate::cli::ExportArgs;
 use peelnet::{Failure, PRECISIONS};

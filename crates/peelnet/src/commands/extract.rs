@@ -1,5 +1,3 @@
-//! `peelnet extract` and `peelnet seal`: scenes into a dataset.
-
 use super::{Context, command_line, json_path};
 use crate::cli::{ExtractArgs, SealArgs};
 use crate::progress::Bar;
@@ -57,7 +55,6 @@ pub(super) fn run(context: &Context<'_>, args: &ExtractArgs) -> Result<(), Failu
     })
 }
 
-/// Finished parts into one dataset.
 pub(super) fn seal(context: &Context<'_>, args: &SealArgs) -> Result<(), Failure> {
     let m = peelnet_dataset::seal(&args.dataset)?;
     let text = || {
@@ -152,7 +149,6 @@ pub(super) fn peel(
     Ok(report)
 }
 
-/// What an extraction did, in one line.
 pub(super) fn text(folder: &Path, report: &ExtractReport) -> String {
     let seconds = report.wall_micros / 1e6;
     let m = &report.manifest;

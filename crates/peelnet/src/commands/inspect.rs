@@ -1,5 +1,3 @@
-//! `peelnet inspect`: what a scene, a dataset or a model is.
-
 use super::{Context, bench::EFFECTS_METHOD, few, json_path, losses};
 use crate::cli::InspectArgs;
 use crate::summary_text::summary_text;
@@ -16,7 +14,6 @@ use std::{collections::HashMap, path::Path};
 /// Frame in which a scene's fragments are counted: view 0 at the size that `extract` and `render` use by default.
 const COUNTED_AT: [u32; 2] = [1024, 768];
 
-/// Frame in which effects are timed.
 const TIMED_AT: [u32; 2] = [512, 384];
 
 /// Timed frames with and without each effect, in turn.

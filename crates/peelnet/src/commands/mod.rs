@@ -1,5 +1,3 @@
-//! One file per command.
-
 mod bench;
 mod bench_designs;
 mod doctor;
@@ -27,7 +25,6 @@ use peelnet_scene::{Scene, SceneError, suite};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// What every command works with.
 #[derive(Clone, Copy, Debug)]
 pub struct Context<'a> {
     pub console: Console,
@@ -56,7 +53,6 @@ impl Context<'_> {
         Outputs::new(("--force", self.global.force), inputs)
     }
 
-    /// The files of a measurement and its pictures in a folder.
     fn results(&self, outputs: &mut Outputs, out: &Path, files: &[&str]) -> Result<(), Failure> {
         let files = files.iter().map(|name| (name, kind_of(name)));
         outputs.folder("--out", out, files)?;
@@ -81,7 +77,6 @@ impl Context<'_> {
         paths.iter().map(|path| self.scene(path, None)).collect()
     }
 
-    /// A scene, at a time of its timeline.
     fn scene(&self, path: &Path, time: Option<f32>) -> Result<Scene, Failure> {
         if path.is_file() {
             self.say_not_shipped("file", path);

@@ -1,5 +1,3 @@
-//! `peelnet recommend`: the best method within a budget.
-
 use super::{Context, bench};
 use crate::cli::RecommendArgs;
 use peelnet::Failure;

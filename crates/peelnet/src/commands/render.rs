@@ -1,5 +1,3 @@
-//! `peelnet render`: one frame with one method.
-
 use super::{Context, json_path};
 use crate::cli::RenderArgs;
 use peelnet::Failure;

@@ -147,7 +147,6 @@ impl Run<'_> {
         self.context.check_interrupt()
     }
 
-    /// The size of frames for people.
     fn size(&self) -> String {
         format!("{}x{}", self.frame[0], self.frame[1])
     }
@@ -220,7 +219,6 @@ impl Run<'_> {
         Ok((outcome, loss))
     }
 
-    /// Exports the model as shader text, which the comparison draws with.
     fn export(&mut self, model: &Model) -> Result<LearnedWeight, Failure> {
         let path = self.args.out.join("model.wgsl");
         let options = peelnet_export::Options::default();
@@ -336,7 +334,6 @@ impl Run<'_> {
     }
 }
 
-/// The table and the findings.
 fn text(results: &Results<ThesisRun>) -> String {
     let findings = results.measured.findings.iter();
     let findings: String = findings.map(|f| format!("- {f}\n")).collect();

@@ -1,5 +1,3 @@
-//! `peelnet stress`: the hard cases.
-
 use super::{Context, bench::compared, command_line};
 use crate::cli::StressArgs;
 use crate::progress::Bar;

@@ -1,5 +1,3 @@
-//! `peelnet train`: a dataset into a network.
-
 use super::{Context, json_path};
 use crate::cli::TrainArgs;
 use crate::progress::Bar;
@@ -60,7 +58,6 @@ pub(super) fn run(context: &Context<'_>, args: &TrainArgs) -> Result<(), Failure
     })
 }
 
-/// The recipe's settings with those of the flags.
 fn config(args: &TrainArgs) -> Result<Config, Failure> {
     let recipe = Config::for_recipe(args.recipe);
     let config = Config {
@@ -150,7 +147,6 @@ fn say(context: &Context<'_>, config: &Config, data: &TrainingData, out: &Path) 
     ));
 }
 
-/// Says if not all rows are used.
 pub(super) fn warn_of_rows(context: &Context<'_>, used: Option<UsedRows>, config: &Config) {
     if let Some(UsedRows { used, of }) = used.filter(|rows| rows.used < rows.of) {
         context.console.warn(format!(
@@ -183,7 +179,6 @@ fn split_text(split: &DataSplit) -> String {
     }
 }
 
-/// Seconds of all epochs.
 pub(super) fn seconds(outcome: &Outcome) -> f64 {
     outcome.history.iter().map(|e| e.seconds).sum()
 }
@@ -195,7 +190,6 @@ fn rows_per_s(outcome: &Outcome) -> f64 {
     rates.get(rates.len() / 2).copied().unwrap_or(0.0)
 }
 
-/// What a training did, in a few lines.
 pub(super) fn text(out: &Path, outcome: &Outcome) -> String {
     let meta = &outcome.model.meta;
     let mut t = format!(

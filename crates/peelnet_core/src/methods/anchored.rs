@@ -21,7 +21,6 @@ use crate::{
 /// waste the anchor.
 pub const FAINT: f32 = 1.0 / 255.0;
 
-/// Where in its pixel a fragment lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {
     Nearest,

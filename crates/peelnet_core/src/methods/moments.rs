@@ -53,7 +53,6 @@ impl Settings {
     }
 }
 
-/// Absorbance and moments of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Moments {
     basis: Basis,

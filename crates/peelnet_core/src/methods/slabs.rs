@@ -159,7 +159,6 @@ impl Design {
     }
 }
 
-/// Where in its pixel a fragment lies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Place {
     absorbance: f64,
@@ -211,7 +210,6 @@ fn level(zeta: f64) -> f64 {
     RANGE_TOP * (zeta * 0.5 + 0.5)
 }
 
-/// What is kept of one slab.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Slab {
     /// `A` and `B`: absorbance, and absorbance times place in the slab.
@@ -260,7 +258,6 @@ impl Seen {
     }
 }
 
-/// The slabs of one pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Slabs {
     design: Design,

@@ -1,5 +1,3 @@
-//! The file of designs.
-
 use super::{DESIGNS, Entry, Source};
 use crate::EvalError;
 use peelnet_core::{
@@ -11,7 +9,6 @@ use peelnet_model::{Budget, Declaration, Inputs, Network, PixelLoss, Recipe};
 use serde::Deserialize;
 use std::path::Path;
 
-/// Longest file that is read.
 const MAX_BYTES: u64 = 1 << 20;
 
 /// Hidden units of one layer, at most.

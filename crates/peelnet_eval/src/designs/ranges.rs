@@ -25,7 +25,6 @@ pub enum Source {
 }
 
 impl Source {
-    /// Its name in files.
     pub const fn name(self) -> &'static str {
         ["pixel", "frame", "boxes", "last", "quantiles"][self as usize]
     }

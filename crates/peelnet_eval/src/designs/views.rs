@@ -163,7 +163,6 @@ impl View {
         measured
     }
 
-    /// The error of these colours, as figures and as an image.
     fn measured(&self, colors: &[[f64; 3]]) -> (Measured, Option<Vec<[f32; 3]>>) {
         let pixels = self.stacks.iter().zip(colors);
         let squares = pixels.map(|(stack, color)| {

@@ -29,21 +29,18 @@ use std::sync::atomic::AtomicBool;
 use strip::Strip;
 use video::{DISPLAY_ABOUT, FPS};
 
-/// Bytes that a path may keep.
 const MAX_PATH_BYTES: u64 = 1 << 31;
 
 /// Bytes of a pixel of a frame that are kept: the exact image in linear light (16), as it is shown (4) and as the metric sees it (12), a
 /// method's frame as the metric sees it (12), and which of its neighbours show the same surfaces (1).
 const BYTES_PER_PIXEL: u64 = 45;
 
-/// Mean absolute value over pixels and channels.
 fn mean_absolute(image: &[[f32; 3]]) -> f64 {
     let all = image.as_flattened();
     let sum: f64 = all.iter().map(|&x| f64::from(x.abs())).sum();
     sum / all.len().max(1) as f64
 }
 
-/// By how much an error image changed.
 fn change_of(before: &[[f32; 3]], after: &[[f32; 3]]) -> Vec<[f32; 3]> {
     let pixels = before.iter().zip(after);
     pixels
@@ -138,7 +135,6 @@ impl Take<'_, '_> {
         saved.map_err(self.stage.failed(method))
     }
 
-    /// Measures one method against the exact frames.
     fn measure(
         &mut self,
         method: &MethodSpec,

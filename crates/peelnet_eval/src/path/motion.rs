@@ -1,5 +1,3 @@
-//! Where camera and objects are along a path.
-
 use glam::{Mat4, Quat, Vec3};
 use peelnet_scene::{Camera, Object, Scene};
 use std::f32::consts::TAU;
@@ -19,7 +17,6 @@ const SHIFT: f32 = 0.04;
 /// 360° (1 − 1/φ), radians: multiples of it are never near each other, so that neighbours in the list move differently.
 const GOLDEN_ANGLE: f32 = 2.399_963;
 
-/// Camera and objects at one moment.
 pub(super) struct Moment {
     pub camera: Camera,
     /// Object to world space, of every object.

@@ -5,7 +5,6 @@ use image::{Rgba, Rgba32FImage, imageops};
 use peelnet_core::srgb;
 use peelnet_render::Image;
 
-/// Frames of a strip.
 const FRAMES: usize = 6;
 
 /// The width of one frame in a strip, pixels, at most.
@@ -37,7 +36,6 @@ impl Strip {
         }
     }
 
-    /// Whether the frame with this number is shown.
     fn shows(&self, number: usize) -> bool {
         let shown = FRAMES.min(self.frames);
         (0..shown).any(|k| k * self.frames / shown == number)
@@ -54,7 +52,6 @@ impl Strip {
         }
     }
 
-    /// Adds an error image and its change.
     pub fn add_errors(&mut self, number: usize, errors: &[[f32; 3]], change: Option<&[[f32; 3]]>) {
         let amount = change.map_or(0.0, mean_absolute);
         let is_worst = amount > self.worst.as_ref().map_or(0.0, |(most, _)| *most);

@@ -3,7 +3,6 @@
 use crate::{EvalError, perceptual::Displayed};
 use colorvideovdp::{Color, Cvvdp, DisplayModel, Image, Options};
 
-/// Frames a second that the path is shown at.
 pub(super) const FPS: f32 = 30.0;
 
 /// The display that it is shown on: one of the metric's own models, and what that is.

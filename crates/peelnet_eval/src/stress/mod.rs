@@ -41,7 +41,6 @@ use trial::{Content, Trial, Truth};
 pub struct Case {
     pub id: &'static str,
     pub what: &'static str,
-    /// What is known to break there.
     pub breaks: &'static str,
     work: Work,
 }

@@ -27,7 +27,6 @@ impl Finding {
 #[derive(Default)]
 pub(super) struct Findings {
     pub all: BTreeMap<(usize, Property), Finding>,
-    /// The number of the subject that is judged.
     pub subject: usize,
     /// What every place begins with.
     pub scene: String,

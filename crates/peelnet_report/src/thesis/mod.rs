@@ -29,7 +29,6 @@ pub struct Stage {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ThesisRun {
     pub stages: Vec<Stage>,
-    /// Settings that matter, as name and value.
     pub settings: Vec<(String, String)>,
     pub findings: Vec<String>,
     /// Scenes among them that the learned method was trained on.

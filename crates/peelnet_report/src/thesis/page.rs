@@ -1,5 +1,3 @@
-//! The page of a run.
-
 use super::{EXPLANATION, Stage, ThesisRun};
 use crate::{
     ReportError, Results, Table, bench, page,

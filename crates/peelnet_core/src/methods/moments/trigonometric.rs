@@ -27,7 +27,6 @@ pub const BIAS: f64 = 1e-4;
 /// For 16-bit moments: two roundings of a sum.
 pub const BIAS_HALF: f64 = 1e-3;
 
-/// The angle of a warped depth.
 fn angle(zeta: f64) -> f64 {
     (zeta + 1.0) * (PI - 0.5 * WRAPPING_ZONE)
 }
