@@ -10,7 +10,7 @@ use naga::{
     valid::{Capabilities, ValidationFlags, Validator},
 };
 use peelnet_core::random::Random;
-use peelnet_export::{Blend, Description, Drawn, Language, Options, SelfTest, Target};
+use peelnet_export::{Blend, Description, Language, Options, SelfTest, Target};
 use peelnet_gpu::Gpu;
 use peelnet_model::{Model, Recipe};
 use peelnet_tests::{assert_near, gpu, run_text, shipped};
@@ -77,14 +77,6 @@ fn blended(target: &Target) -> String {
     text
 }
 
-fn fragment(f: &Drawn, zeta: &str) -> String {
-    let [r, g, b] = f.rgb.map(|c| format!("f32({c})"));
-    format!(
-        "        let z = f32({});\n        let alpha = f32({});\n        let rgb = vec3f({r}, {g}, {b});\n        {zeta}\n",
-        f.z, f.alpha
-    )
-}
-
 #[test]
 fn descriptions_lead_to_the_colour_of_the_self_test() {
     let gpu = gpu();
@@ -108,8 +100,12 @@ fn descriptions_lead_to_the_colour_of_the_self_test() {
                 let compute = pass.compute.map(|value| value.to_string());
                 let compute = compute.unwrap_or_default();
                 let blended: String = pass.targets.iter().map(blended).collect();
-                let begin = fragment(f, zeta);
-                body += &format!("    {{\n{begin}        {compute}\n{blended}    }}\n");
+                let [r, g, b] = f.rgb.map(|c| format!("f32({c})"));
+                body += &format!(
+                    "    {{\n        let z = f32({});\n        let alpha = f32({});\n        let rgb = vec3f({r}, {g}, {b});
+        {zeta}\n        {compute}\n{blended}    }}\n",
+                    f.z, f.alpha
+                );
             }
         }
         let [r, g, b] = pixel.background.map(|c| format!("f32({c})"));
