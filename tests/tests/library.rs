@@ -447,13 +447,14 @@ fn an_applications_own_device() {
     assert!(message.contains("float32-blendable"), "{message}");
 }
 
-/// What can be drawn can be moved to another thread.
+/// What can be drawn can be moved to another thread, and a scene shared with it.
 #[test]
 fn public_types_are_send() {
     fn is_send<T: Send>() {}
+    fn is_shared<T: Clone + Send + Sync + 'static>() {}
     is_send::<Gpu>();
     is_send::<Renderer>();
     is_send::<Prepared>();
-    is_send::<Scene>();
+    is_shared::<Scene>();
     is_send::<peelnet_peel::harvest::Harvester>();
 }

@@ -173,9 +173,9 @@ materials/3/extensions = {"KHR_materials_transmission": {"transmissionFactor": 0
 #[test]
 fn images_vertex_colours_and_transmission() {
     let floats = |all: &[f32]| -> Vec<u8> { all.iter().flat_map(|x| x.to_le_bytes()).collect() };
-    let red = image(2, [255, 0, 0, 128]);
+    let red = image(&[[255, 0, 0, 128]; 2]);
     let document = changed(&IMAGES.replace("LENGTH", &red.len().to_string()));
-    let normals = image(2, [128, 128, 255, 255]);
+    let normals = image(&[[128, 128, 255, 255]; 2]);
     let files = [
         ("thing.glb", &*glb(&document, &square())),
         ("uvs.bin", &floats(&[0., 1., 1., 1., 1., 0., 0., 0.])),
@@ -217,8 +217,8 @@ fn specular_and_glossiness() {
         ));
         let files = [
             ("thing.glb", glb(&document, &square())),
-            ("diffuse.png", image(2, [0, 0, 0, 128])),
-            ("specular.png", image(2, [255, 255, 255, 102])),
+            ("diffuse.png", image(&[[0, 0, 0, 128]; 2])),
+            ("specular.png", image(&[[255, 255, 255, 102]; 2])),
         ];
         let scene = load_files(&files.each_ref().map(|(name, bytes)| (*name, &**bytes))).unwrap();
         let warnings = scene.warnings.join("\n");
