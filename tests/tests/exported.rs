@@ -13,7 +13,7 @@ use peelnet_core::random::Random;
 use peelnet_export::{Blend, Description, Language, Options, SelfTest, Target};
 use peelnet_gpu::Gpu;
 use peelnet_model::{Model, Recipe};
-use peelnet_tests::{assert_near, gpu, run_text, shipped};
+use peelnet_tests::{assert_near, gpu, shipped};
 use std::{fs, path::Path};
 
 /// What engines are given is what the renderer draws with. `PEELNET_UPDATE=1` writes the texts anew.
@@ -122,7 +122,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {{
     answers[id.x] = {resolve};
 }}"
         );
-        let found: Vec<[f32; 4]> = run_text(&gpu, &program, &[[0.0; 4]], 1);
+        let found: Vec<[f32; 4]> = gpu.run(&program, &[[0f32; 4]], 1, 1).unwrap();
         assert_near(found[0], pixel.color, SOME_ROUNDINGS, recipe);
         drawn += 1;
     }
@@ -181,7 +181,8 @@ fn evaluate(gpu: &Gpu, model: &Model, text: &str, rows: &[Vec<f32>]) -> Vec<f32>
     let mut flat: Vec<f32> = rows.iter().flatten().copied().collect();
     flat.resize(flat.len().next_multiple_of(4), 0.0);
     let (quads, _) = flat.as_chunks();
-    run_text(gpu, &read_back, quads, rows.len() * outputs)
+    let count = rows.len() * outputs;
+    gpu.run(&read_back, quads, count, count as u32).unwrap()
 }
 
 #[test]
