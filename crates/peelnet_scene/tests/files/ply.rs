@@ -29,8 +29,7 @@ fn square_text() -> String {
 
 /// The same square in binary: bytes of four numbers in either order.
 fn square_binary(is_big: bool) -> Vec<u8> {
-    let four = |bytes: [u8; 4]| {
-        let mut bytes = bytes;
+    let four = |mut bytes: [u8; 4]| {
         if is_big {
             bytes.reverse();
         }
