@@ -64,11 +64,7 @@ fn all_three_ways_find_the_same_fragments() {
             let budgets = [None, Some(total as u64 / 3), Some(150)];
             for budget in &budgets[..tilings] {
                 let (found, tiles) = harvest(&gpu, &scene, peel, *budget, None);
-                assert!(if budget.is_some() {
-                    tiles >= 3
-                } else {
-                    tiles == 1
-                });
+                assert!(budget.map_or(tiles == 1, |_| tiles >= 3));
                 assert!(found == sbuffer, "{peel}, seed {seed}, {tiles} tiles");
             }
         }

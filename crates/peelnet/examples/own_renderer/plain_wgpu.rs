@@ -169,9 +169,8 @@ impl Program {
             wgpu::TexelCopyBufferInfo {
                 buffer: &buffer,
                 layout: wgpu::TexelCopyBufferLayout {
-                    offset: 0,
                     bytes_per_row: Some(4 * SIZE),
-                    rows_per_image: None,
+                    ..Default::default()
                 },
             },
             picture.texture.size(),

@@ -14,13 +14,11 @@ pub(crate) fn build(text: &str) -> Mesh {
 }
 
 fn volume(mesh: &Mesh) -> f64 {
-    mesh.triangles
-        .iter()
-        .map(|t| {
-            let [a, b, c] = t.map(|i| mesh.positions[i as usize]);
-            f64::from(a.dot(b.cross(c))) / 6.0
-        })
-        .sum()
+    let cone = |t: &[u32; 3]| {
+        let [a, b, c] = t.map(|i| mesh.positions[i as usize]);
+        f64::from(a.dot(b.cross(c))) / 6.0
+    };
+    mesh.triangles.iter().map(cone).sum()
 }
 
 const LATHE: &str = "shape = 'lathe'\noffset = 0.05\nprofile = [[0, -1], [0.6, -1], [0.9, 0], [0.4, 0.8], [0.5, 1], [0.3, 0.8], [0.7, 0], [0, -0.8]]";
