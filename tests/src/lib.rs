@@ -92,17 +92,6 @@ pub fn assert_alike(found: &[[f32; 4]], want: &[[f32; 4]], bound: f32, what: imp
     }
 }
 
-/// Runs a compute shader on buffers of inputs and of `count` answers.
-pub fn run_text<T: bytemuck::Pod>(
-    gpu: &Gpu,
-    wgsl: &str,
-    inputs: &[[f32; 4]],
-    count: usize,
-) -> Vec<T> {
-    gpu.run(wgsl, inputs, count, count as u32)
-        .unwrap_or_else(|e| panic!("{e}"))
-}
-
 pub fn even(texel: [u8; 4]) -> Option<Arc<Texture>> {
     Some(Arc::new(Texture::of("even", [4, 4], |_, _| texel)))
 }

@@ -8,7 +8,7 @@ use peelnet_eval::{
 };
 use peelnet_gpu::Gpu;
 use peelnet_render::Renderer;
-use peelnet_scene::{Material, Object, Scene};
+use peelnet_scene::{Material, Object};
 use peelnet_tests::{even, gpu, object, quad, scene, specs};
 use std::sync::Arc;
 
@@ -114,23 +114,18 @@ fn opacity_does_not_count_and_holes_do() {
     assert_eq!(pairs(&gpu, hidden, 1), inside(8, ALL));
 }
 
-/// A wall of one colour before another one, which is black on the left and white on the right: blending in the wrong order errs by another
-/// amount on both sides. The border runs down the whole frame, inside the surfaces.
-fn bordered() -> Scene {
+/// A bench counts the border that runs down the whole frame between a wall of one colour before a black one and before a white one: blending
+/// in the wrong order errs by another amount on both sides. Exact methods have no contour.
+#[test]
+fn benches_count_the_border_of_an_error() {
+    let gpu = gpu();
     let near = object(&pane([2.0; 2], FRAME, FRAME), glass());
     let halves = [[0.0, 8.0], [8.0, 16.0]].map(|columns| pane([3.0; 2], columns, FRAME));
     let mut far = object(&halves.concat(), Material::unlit([1.0; 3], 0.5));
     let mesh = Arc::make_mut(&mut far.mesh);
     mesh.colors = vec![[0.0, 0.0, 0.0, 1.0]; 6];
     mesh.colors.resize(12, [1.0; 4]);
-    scene("bordered", [0.0; 3], vec![near, far])
-}
-
-/// A bench counts the border; exact methods have no contour.
-#[test]
-fn benches_count_the_border_of_an_error() {
-    let gpu = gpu();
-    let scene = bordered();
+    let scene = scene("bordered", [0.0; 3], vec![near, far]);
     let methods = specs(["depth-peel", "weighted-average"]);
     let want = ALL as f64 / inside(ALL, ALL) as f64;
     let plan = Plan {

@@ -10,10 +10,10 @@ use naga::{
     valid::{Capabilities, ValidationFlags, Validator},
 };
 use peelnet_core::random::Random;
-use peelnet_export::{Blend, Description, Drawn, Language, Options, SelfTest, Target};
+use peelnet_export::{Blend, Description, Language, Options, SelfTest, Target};
 use peelnet_gpu::Gpu;
 use peelnet_model::{Model, Recipe};
-use peelnet_tests::{assert_near, gpu, run_text, shipped};
+use peelnet_tests::{assert_near, gpu, shipped};
 use std::{fs, path::Path};
 
 /// What engines are given is what the renderer draws with. `PEELNET_UPDATE=1` writes the texts anew.
@@ -77,14 +77,6 @@ fn blended(target: &Target) -> String {
     text
 }
 
-fn fragment(f: &Drawn, zeta: &str) -> String {
-    let [r, g, b] = f.rgb.map(|c| format!("f32({c})"));
-    format!(
-        "        let z = f32({});\n        let alpha = f32({});\n        let rgb = vec3f({r}, {g}, {b});\n        {zeta}\n",
-        f.z, f.alpha
-    )
-}
-
 #[test]
 fn descriptions_lead_to_the_colour_of_the_self_test() {
     let gpu = gpu();
@@ -108,8 +100,12 @@ fn descriptions_lead_to_the_colour_of_the_self_test() {
                 let compute = pass.compute.map(|value| value.to_string());
                 let compute = compute.unwrap_or_default();
                 let blended: String = pass.targets.iter().map(blended).collect();
-                let begin = fragment(f, zeta);
-                body += &format!("    {{\n{begin}        {compute}\n{blended}    }}\n");
+                let [r, g, b] = f.rgb.map(|c| format!("f32({c})"));
+                body += &format!(
+                    "    {{\n        let z = f32({});\n        let alpha = f32({});\n        let rgb = vec3f({r}, {g}, {b});
+        {zeta}\n        {compute}\n{blended}    }}\n",
+                    f.z, f.alpha
+                );
             }
         }
         let [r, g, b] = pixel.background.map(|c| format!("f32({c})"));
@@ -126,7 +122,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {{
     answers[id.x] = {resolve};
 }}"
         );
-        let found: Vec<[f32; 4]> = run_text(&gpu, &program, &[[0.0; 4]], 1);
+        let found: Vec<[f32; 4]> = gpu.run(&program, &[[0f32; 4]], 1, 1).unwrap();
         assert_near(found[0], pixel.color, SOME_ROUNDINGS, recipe);
         drawn += 1;
     }
@@ -185,7 +181,8 @@ fn evaluate(gpu: &Gpu, model: &Model, text: &str, rows: &[Vec<f32>]) -> Vec<f32>
     let mut flat: Vec<f32> = rows.iter().flatten().copied().collect();
     flat.resize(flat.len().next_multiple_of(4), 0.0);
     let (quads, _) = flat.as_chunks();
-    run_text(gpu, &read_back, quads, rows.len() * outputs)
+    let count = rows.len() * outputs;
+    gpu.run(&read_back, quads, count, count as u32).unwrap()
 }
 
 #[test]

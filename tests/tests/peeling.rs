@@ -64,11 +64,7 @@ fn all_three_ways_find_the_same_fragments() {
             let budgets = [None, Some(total as u64 / 3), Some(150)];
             for budget in &budgets[..tilings] {
                 let (found, tiles) = harvest(&gpu, &scene, peel, *budget, None);
-                assert!(if budget.is_some() {
-                    tiles >= 3
-                } else {
-                    tiles == 1
-                });
+                assert!(budget.map_or(tiles == 1, |_| tiles >= 3));
                 assert!(found == sbuffer, "{peel}, seed {seed}, {tiles} tiles");
             }
         }
@@ -170,56 +166,38 @@ fn random_depths(n: usize, seed: u64) -> Vec<f32> {
     (0..n).map(|_| 2.0 + 4.0 * random.unit()).collect()
 }
 
-/// A shader's module, what of its text is changed to what, and what the error then says.
-type Broken = (&'static str, &'static str, &'static str, &'static str);
-
-const LOST_TRIANGLE: &str = "if surface.triangle == 6u { discard; }\n    let pixel =";
-const ORDER: &str = "out of order";
-
-/// Of storage that is sorted in passes of its own.
-const BROKEN_STORAGE: [Broken; 6] = {
-    const MERGE: &str = "peel::long_merge";
-    let (near, far) = ("near.depth < far.depth", "near.depth > far.depth");
-    let (least, more) = ("least = half + 1u", "least = half + 2u");
-    let next = "if next <= depth + 1.0";
-    [
-        ("peel::sort", "if next < depth", next, ORDER),
-        (
-            "peel::long_chunks",
-            "depth < own",
-            "depth < own * 0.5",
-            ORDER,
-        ),
-        (MERGE, near, far, ORDER),
-        (MERGE, least, more, ORDER),
-        ("peel::store", "let pixel =", LOST_TRIANGLE, "1 lost"),
-        ("peel::count", "let pixel =", LOST_TRIANGLE, "1 found twice"),
-    ]
-};
-
-const BROKEN_LISTS: [Broken; 3] = {
-    const LIST: &str = "methods::linked_list::composite";
-    let following = "let following = next[node - 1u];";
-    let skipped = "let following = next[next[node - 1u] - 1u];";
-    let left = "left_count > 0u && (right_empty || before(left, right))";
-    [
-        (LIST, "return near < far", "return near > far", ORDER),
-        (LIST, following, skipped, "lost"),
-        (LIST, left, "left_count > 0u", ORDER),
-    ]
-};
+/// A shader's module, what of its text is changed to what, and what the error then says: of storage that is sorted in passes of its own, and of
+/// linked lists.
+const BROKEN: &str = "
+peel::sort => if next < depth => if next <= depth + 1.0 => out of order
+peel::long_chunks => depth < own => depth < own * 0.5 => out of order
+peel::long_merge => near.depth < far.depth => near.depth > far.depth => out of order
+peel::long_merge => least = half + 1u => least = half + 2u => out of order
+peel::store => let pixel = => if surface.triangle == 6u { discard; } let pixel = => 1 lost
+peel::count => let pixel = => if surface.triangle == 6u { discard; } let pixel = => 1 found twice
+methods::linked_list::composite => return near < far => return near > far => out of order
+methods::linked_list::composite => let following = next[node - 1u]; => let following = next[next[node - 1u] - 1u]; => lost
+methods::linked_list::composite => left_count > 0u && (right_empty || before(left, right)) => left_count > 0u => out of order
+";
 
 /// What is wrong in a sort or loses fragments ends the extraction and the exact image with an error that says what and where.
 #[test]
 fn broken_sorts_and_lost_fragments_are_errors() {
     let gpu = gpu();
-    let drawn = |(module, from, to, expected): Broken, lists: &[Vec<f32>], method: &str| {
-        let (scene, size) = deep_pixels(lists);
+    for row in BROKEN.trim().lines() {
+        let columns: Vec<&str> = row.split(" => ").collect();
+        let [module, from, to, expected] = columns[..] else {
+            panic!("{row}");
+        };
+        let is_stored = module.starts_with("peel::");
+        let mut lists = vec![random_depths(40, 1)];
+        lists.extend(is_stored.then(|| random_depths(3000, 2)));
+        let (scene, size) = deep_pixels(&lists);
         let text = peelnet_shaders::source(module).unwrap();
         assert!(text.contains(from), "{module}: {from}");
         let altered = text.replacen(from, to, 1);
         peelnet_shaders::with_altered(module, &altered, || {
-            if method == "abuffer" {
+            if is_stored {
                 let harvester = Harvester::new(&gpu, &scene, size, Peel::SBuffer, false, None);
                 let (view, all) = (&scene.views[0], PixelSample::ALL);
                 let ignored = |_: &mut RawTile| Ok(());
@@ -230,18 +208,12 @@ fn broken_sorts_and_lost_fragments_are_errors() {
                 assert!(says, "{message}");
             }
             let renderer = Renderer::new(&gpu, &scene).unwrap();
+            let method = if is_stored { "abuffer" } else { "linked-list" };
             let mut prepared = prepare(&renderer, method, size);
             let message = renderer.image(&mut prepared, &scene.views[0]).unwrap_err();
             let message = message.to_string();
             assert!(message.contains(expected), "{message}");
         });
-    };
-    for broken in BROKEN_STORAGE {
-        let lists = [random_depths(40, 1), random_depths(3000, 2)];
-        drawn(broken, &lists, "abuffer");
-    }
-    for broken in BROKEN_LISTS {
-        drawn(broken, &[random_depths(40, 1)], "linked-list");
     }
 }
 

@@ -3,7 +3,7 @@
 use glam::{Mat4, Quat, Vec3};
 use peelnet_core::{fragment::Fragment, methods::over};
 use peelnet_render::Renderer;
-use peelnet_scene::{Material, Object, Scene};
+use peelnet_scene::{Material, Object};
 use peelnet_tests::{draw, gpu, object, prepare, rectangle, scene};
 
 /// Where the layers of the middle pixel lie in its range of depth on a logarithmic scale. The slabs of `slabs` end at 0.12, 0.4 and 0.75: each
@@ -48,17 +48,6 @@ fn fragments() -> Vec<Fragment> {
     PLACES.iter().enumerate().map(of).collect()
 }
 
-/// The squares, and one far behind and beside them, which makes the frame's range six times as long.
-fn squares() -> Scene {
-    let squares = fragments()
-        .into_iter()
-        .enumerate()
-        .map(|(number, f)| square(placed(number), Material::unlit(f.color, f.alpha)));
-    let aside = Mat4::from_translation(Vec3::new(200.0, 0.0, -250.0));
-    let far = square(aside, Material::unlit([1.0; 3], 0.5));
-    scene("squares", [0.0; 3], squares.chain([far]).collect())
-}
-
 fn error(found: [f32; 4]) -> f32 {
     let exact = over::composite_f64(&fragments(), [0.0; 3]);
     let differences = exact.iter().zip(found);
@@ -70,7 +59,12 @@ fn error(found: [f32; 4]) -> f32 {
 #[test]
 fn boxes_of_flat_objects_are_as_good_as_their_surfaces() {
     let gpu = gpu();
-    let all = squares();
+    let squares = (0..).zip(fragments());
+    let squares = squares.map(|(i, f)| square(placed(i), Material::unlit(f.color, f.alpha)));
+    // Far behind and beside them, which makes the frame's range six times as long.
+    let aside = Mat4::from_translation(Vec3::new(200.0, 0.0, -250.0));
+    let far = square(aside, Material::unlit([1.0; 3], 0.5));
+    let all = scene("squares", [0.0; 3], squares.chain([far]).collect());
     let of = |method: &str| error(draw(&gpu, &all, method, SIZE).pixels[MIDDLE]);
     let [pixel, boxes, frame] = ["slabs", "slabs:range=boxes", "slabs:range=frame"].map(of);
     assert!(pixel < KNOWN, "{pixel}");

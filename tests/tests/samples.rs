@@ -38,11 +38,6 @@ fn half_plane(depth: f32, share: f32, material: Material) -> Object {
     object(&rectangle([-far, edge], [-far, far], depth), material)
 }
 
-/// Whether a half-plane covers a sample of the pixels that its edge cuts.
-fn covers(share: f32, sample: usize) -> bool {
-    ACROSS[sample] < share
-}
-
 fn image(gpu: &Gpu, scene: &Scene, method: impl Display) -> Image {
     let options = MethodOptions::sized([SIDE; 2]).sampled(4);
     frame(gpu, scene, method, options).image
@@ -98,8 +93,8 @@ fn a_pixel_is_the_mean_of_its_samples() {
     for spec in MethodSpec::all() {
         let mean = || -> Option<[f32; 3]> {
             let mut mean = [0.0; 3];
-            for sample in 0..4 {
-                let inside = surfaces.iter().filter(|s| covers(s.1, sample));
+            for across in ACROSS {
+                let inside = surfaces.iter().filter(|s| across < s.1);
                 let fragment = |&(depth, _, color, alpha): &_| Fragment {
                     window_depth: window_depth(depth),
                     ..Fragment::new(depth, alpha, color)

@@ -2,7 +2,7 @@
 
 use peelnet_core::{guards, weights::Weight};
 use peelnet_gpu::Gpu;
-use peelnet_tests::{HALF, gpu, run_text};
+use peelnet_tests::{HALF, gpu};
 
 /// Runs `body` (WGSL statements that read `x = inputs[i]` and set `y`) for every input, with features of the shaders.
 fn evaluate(
@@ -26,7 +26,8 @@ fn evaluate(
         }}"
     );
     let wgsl = peelnet_shaders::link("driver", features, &[("driver", &root)]).unwrap();
-    run_text(gpu, &wgsl, inputs, inputs.len())
+    let count = inputs.len();
+    gpu.run(&wgsl, inputs, count, count as u32).unwrap()
 }
 
 #[test]

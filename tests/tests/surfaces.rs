@@ -142,11 +142,8 @@ fn passes_without_colour_take_any_images() {
     first.maps.color = even([255, 255, 255, 204]);
     let mut second = first.clone();
     second.maps.normal = even([128, 128, 255, 255]);
-    let mut both = scene(
-        "both",
-        [0.2; 3],
-        vec![wall(3.0, first.clone()), wall(5.0, second)],
-    );
+    let objects = vec![wall(3.0, first.clone()), wall(5.0, second)];
+    let mut both = scene("both", [0.2; 3], objects);
     both.lights.push(light(Vec3::new(0.5, 0.5, 1.0), [1.0; 3]));
     let mut alike = both.clone();
     alike.objects[1] = wall(5.0, first);

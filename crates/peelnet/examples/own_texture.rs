@@ -24,13 +24,8 @@ fn main() -> Result<(), Box<dyn Error>> {
 
     let pixels: Vec<[u8; 4]> = gpu.read_texture(&view)?;
     let path = std::env::args().nth(1).unwrap_or("cups.png".into());
-    image::save_buffer(
-        &path,
-        pixels.as_flattened(),
-        640,
-        480,
-        image::ColorType::Rgba8,
-    )?;
+    let bytes = pixels.as_flattened();
+    image::save_buffer(&path, bytes, 640, 480, image::ColorType::Rgba8)?;
     println!("{path}: cups-held by deep-medium");
     Ok(())
 }

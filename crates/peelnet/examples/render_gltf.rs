@@ -21,9 +21,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut prepared = renderer.method(&method, MethodOptions::sized([640, 480]))?;
     let frame = renderer.image(&mut prepared, &scene.views[0])?;
     frame.image.save(image.as_ref())?;
-    println!(
-        "{image}: {method}, up to {:?} layers",
-        frame.stats.max_layers
-    );
+    let layers = frame.stats.max_layers;
+    println!("{image}: {method}, up to {layers:?} layers");
     Ok(())
 }

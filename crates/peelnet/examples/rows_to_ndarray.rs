@@ -34,18 +34,11 @@ fn main() -> Result<(), Box<dyn Error>> {
         features = concatenate![Axis(0), features, rows];
         targets = concatenate![Axis(0), targets, target];
     }
-    println!(
-        "features {:?}, targets {:?}",
-        features.shape(),
-        targets.shape()
-    );
-    println!(
-        "mean of depth, sum of alpha, count: {:.3}",
-        features.mean_axis(Axis(0)).unwrap_or_default()
-    );
-    println!(
-        "mean transmittance in front: {:.3}",
-        targets.mean().unwrap_or_default()
-    );
+    let [rows, column] = [features.shape(), targets.shape()];
+    println!("features {rows:?}, targets {column:?}");
+    let mean = features.mean_axis(Axis(0)).unwrap_or_default();
+    println!("mean of depth, sum of alpha, count: {mean:.3}");
+    let mean = targets.mean().unwrap_or_default();
+    println!("mean transmittance in front: {mean:.3}");
     Ok(())
 }

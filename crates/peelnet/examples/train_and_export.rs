@@ -13,10 +13,8 @@ use peelnet::{
 use std::{error::Error, path::PathBuf, sync::atomic::AtomicBool};
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let folder = std::env::args()
-        .nth(1)
-        .unwrap_or_else(|| "out/example".into());
-    let folder = PathBuf::from(folder);
+    let folder = std::env::args().nth(1);
+    let folder = PathBuf::from(folder.unwrap_or_else(|| "out/example".into()));
     let gpu = Gpu::open(&AdapterRequest::Auto)?;
     // Set it from elsewhere to stop early: no half file is left behind.
     let stop = AtomicBool::new(false);

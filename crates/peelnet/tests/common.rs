@@ -75,9 +75,9 @@ impl Folder {
     }
 
     /// The file of a network that ships.
-    pub fn write_model(&self, name: &str, recipe: peelnet::Recipe) {
+    pub fn write_model(&self, name: impl AsRef<Path>, recipe: peelnet::Recipe) {
         let model = peelnet::Model::shipped(recipe).unwrap();
-        model.save(self.at(name)).unwrap();
+        model.save(self.path().join(name)).unwrap();
     }
 
     pub fn command(&self, line: &str) -> Command {

@@ -95,10 +95,7 @@ fn paths_that_are_no_text_do_not_end_a_command() {
     };
     let scene = peelnet_data::find("cups").unwrap().text;
     std::fs::write(folder.path().join(odd("@.toml")), scene).unwrap();
-    let model = peelnet::Model::shipped(peelnet::Recipe::SMALL).unwrap();
-    model
-        .save(folder.path().join(odd("@.safetensors")))
-        .unwrap();
+    folder.write_model(odd("@.safetensors"), peelnet::Recipe::SMALL);
     for line in [
         "render @.toml --size 8x8 --out @.png",
         "export @.safetensors --out @.wgsl",

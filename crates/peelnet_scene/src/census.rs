@@ -8,9 +8,6 @@ use crate::{
 use serde::Serialize;
 use std::fmt;
 
-#[cfg(test)]
-mod tests;
-
 /// Pipeline specialisation key of a material. Each distinct key of a scene gets its own pipeline in every pass; no shader branches on
 /// materials.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

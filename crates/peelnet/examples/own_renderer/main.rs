@@ -5,19 +5,11 @@
 
 mod plain_wgpu;
 
-use plain_wgpu::{Pass, Program, SIZE, Target};
+use plain_wgpu::{Program, SIZE, Target};
 use std::error::Error;
 use wgpu::BlendOperation::{Add, Max};
 use wgpu::Color;
 use wgpu::TextureFormat::{Rg8Unorm, Rgba8Unorm, Rgba16Float};
-
-/// What maxima of levels start from: the lowest half float.
-const LOWEST: Color = Color {
-    r: -65504.0,
-    g: -65504.0,
-    b: -65504.0,
-    a: -65504.0,
-};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let network = peelnet::models::find("medium").ok_or("no such network")?;
@@ -27,41 +19,26 @@ fn main() -> Result<(), Box<dyn Error>> {
     let target = |format, clear, blend| Target::new(&program.device, format, clear, blend);
     let range = target(Rg8Unorm, black, Some((Max, Max)));
     let absorbances = target(Rgba16Float, black, Some((Add, Add)));
-    let lowest = Color { a: 0.0, ..LOWEST };
+    // What maxima of levels start from: the lowest half float.
+    let [r, g, b] = [-65504.0; 3];
+    let lowest = Color { r, g, b, a: 0.0 };
     let nearest = target(Rgba16Float, lowest, Some((Max, Add)));
     let farthest = target(Rgba16Float, lowest, Some((Max, Add)));
     let sums = target(Rgba16Float, black, Some((Add, Add)));
     let picture = target(Rgba8Unorm, black, None);
 
-    program.draw(&Pass {
-        entry_points: ["layer", "range_of_pixel"],
-        instances: 4,
-        reads: &[],
-        targets: &[&range],
-    });
-    program.draw(&Pass {
-        entry_points: ["layer", "statistics"],
-        instances: 4,
-        reads: &[(0, &range)],
-        targets: &[&absorbances, &nearest, &farthest],
-    });
-    program.draw(&Pass {
-        entry_points: ["layer", "weighted"],
-        instances: 4,
-        reads: &[
-            (0, &range),
-            (1, &absorbances),
-            (2, &nearest),
-            (3, &farthest),
-        ],
-        targets: &[&sums],
-    });
-    program.draw(&Pass {
-        entry_points: ["whole", "resolve"],
-        instances: 1,
-        reads: &[(1, &absorbances), (4, &sums)],
-        targets: &[&picture],
-    });
+    let statistics = [&absorbances, &nearest, &farthest];
+    let known = [
+        (0, &range),
+        (1, &absorbances),
+        (2, &nearest),
+        (3, &farthest),
+    ];
+    let resolved = [(1, &absorbances), (4, &sums)];
+    program.draw(["layer", "range_of_pixel"], 4, &[], &[&range]);
+    program.draw(["layer", "statistics"], 4, &known[..1], &statistics);
+    program.draw(["layer", "weighted"], 4, &known, &[&sums]);
+    program.draw(["whole", "resolve"], 1, &resolved, &[&picture]);
     let pixels = program.finish(&picture)?;
 
     let path = std::env::args().nth(1);

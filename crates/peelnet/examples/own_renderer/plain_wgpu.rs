@@ -28,7 +28,7 @@ impl Target {
             size: wgpu::Extent3d {
                 width: SIZE,
                 height: SIZE,
-                depth_or_array_layers: 1,
+                ..Default::default()
             },
             mip_level_count: 1,
             sample_count: 1,
@@ -54,17 +54,6 @@ impl Target {
             }),
         }
     }
-}
-
-/// A pass over strips of four vertices.
-pub struct Pass<'a> {
-    /// Of the vertex and of the fragment shader.
-    pub entry_points: [&'a str; 2],
-    /// Strips to draw.
-    pub instances: u32,
-    /// Textures that the shader reads, by binding.
-    pub reads: &'a [(u32, &'a Target)],
-    pub targets: &'a [&'a Target],
 }
 
 /// A device, a shader module, and the passes recorded so far.
@@ -93,14 +82,13 @@ impl Program {
         })
     }
 
-    fn pipeline(&self, pass: &Pass<'_>) -> wgpu::RenderPipeline {
-        let states = pass.targets.iter().map(|target| {
+    fn pipeline(&self, [vertex, fragment]: [&str; 2], targets: &[&Target]) -> wgpu::RenderPipeline {
+        let states = targets.iter().map(|target| {
             Some(wgpu::ColorTargetState {
                 blend: target.blend,
                 ..target.texture.format().into()
             })
         });
-        let [vertex, fragment] = pass.entry_points;
         self.device
             .create_render_pipeline(&wgpu::RenderPipelineDescriptor {
                 label: Some(fragment),
@@ -128,9 +116,16 @@ impl Program {
             })
     }
 
-    pub fn draw(&mut self, pass: &Pass<'_>) {
-        let pipeline = self.pipeline(pass);
-        let attachments = pass.targets.iter().map(|target| {
+    /// A pass over strips of four vertices, by a vertex and a fragment shader that read textures by their bindings.
+    pub fn draw(
+        &mut self,
+        entry_points: [&str; 2],
+        strips: u32,
+        reads: &[(u32, &Target)],
+        targets: &[&Target],
+    ) {
+        let pipeline = self.pipeline(entry_points, targets);
+        let attachments = targets.iter().map(|target| {
             Some(wgpu::RenderPassColorAttachment {
                 view: &target.view,
                 depth_slice: None,
@@ -146,14 +141,11 @@ impl Program {
             ..Default::default()
         });
         recorded.set_pipeline(&pipeline);
-        if !pass.reads.is_empty() {
-            let entries = pass
-                .reads
-                .iter()
-                .map(|(binding, target)| wgpu::BindGroupEntry {
-                    binding: *binding,
-                    resource: wgpu::BindingResource::TextureView(&target.view),
-                });
+        if !reads.is_empty() {
+            let entries = reads.iter().map(|(binding, target)| wgpu::BindGroupEntry {
+                binding: *binding,
+                resource: wgpu::BindingResource::TextureView(&target.view),
+            });
             let group = self.device.create_bind_group(&wgpu::BindGroupDescriptor {
                 label: None,
                 layout: &pipeline.get_bind_group_layout(0),
@@ -161,7 +153,7 @@ impl Program {
             });
             recorded.set_bind_group(0, &group, &[]);
         }
-        recorded.draw(0..4, 0..pass.instances);
+        recorded.draw(0..4, 0..strips);
     }
 
     /// Submits everything and reads a target of four bytes a pixel.
@@ -177,9 +169,8 @@ impl Program {
             wgpu::TexelCopyBufferInfo {
                 buffer: &buffer,
                 layout: wgpu::TexelCopyBufferLayout {
-                    offset: 0,
                     bytes_per_row: Some(4 * SIZE),
-                    rows_per_image: None,
+                    ..Default::default()
                 },
             },
             picture.texture.size(),

@@ -6,13 +6,13 @@ use crate::{
     shapes::tests::build,
 };
 
-fn material(map: Texture, scale: f32, level: u32) -> Material {
+fn material(map: Texture, scale: f32, level: Option<u32>) -> Material {
     let mut material = Material::unlit([1.0; 3], 0.5);
     material.maps.displacement = Some(Displacement {
         map: Arc::new(map),
         scale,
         middle: 0.0,
-        level: Some(level),
+        level,
     });
     material
 }
@@ -51,7 +51,7 @@ fn square(a: f32, b: f32) -> Mesh {
 /// A plane under a white map moves by exactly the scale, under a green one by its luminance.
 #[test]
 fn constant_maps_move_planes() {
-    let plane = moved(&square(0.0, 1.0), &material(white(), 0.375, 2));
+    let plane = moved(&square(0.0, 1.0), &material(white(), 0.375, Some(2)));
     assert_eq!(plane.triangles.len(), 32);
     assert_eq!(plane.parts[0].triangles, 0..32);
     assert_eq!(plane.uvs.len(), 32);
@@ -59,7 +59,7 @@ fn constant_maps_move_planes() {
     assert!(plane.normals.iter().all(|n| *n == Vec3::Z));
     assert!(plane.parts[0].material.maps.displacement.is_none());
     let green = Texture::of("green", [1, 1], |_, _| [0, 255, 0, 255]);
-    let plane = moved(&square(0.0, 1.0), &material(green, 1.0, 0));
+    let plane = moved(&square(0.0, 1.0), &material(green, 1.0, Some(0)));
     assert!(plane.positions.iter().all(|p| p.z == 0.7152));
 }
 
@@ -68,7 +68,7 @@ fn constant_maps_move_planes() {
 fn ramps_have_their_slope() {
     let ramp = Texture::of("ramp", [256, 1], |x, _| [x as u8, x as u8, x as u8, 255]);
     let scale = 3.0;
-    let plane = moved(&square(0.25, 0.75), &material(ramp, scale, 5));
+    let plane = moved(&square(0.25, 0.75), &material(ramp, scale, Some(5)));
     let slope = scale * 128.0 / 255.0 / 2.0;
     let expected = Vec3::new(-slope, 0.0, 1.0).normalize();
     for (p, n) in plane.positions.iter().zip(&plane.normals) {
@@ -83,7 +83,7 @@ fn ramps_have_their_slope() {
 fn closed_surfaces_stay_closed() {
     let cube = build("shape = 'box'");
     assert!(is_closed(&cube));
-    let large = moved(&cube, &material(white(), 0.3, 3));
+    let large = moved(&cube, &material(white(), 0.3, Some(3)));
     assert!(is_closed(&large));
     let corner = 1.0 + 0.3 / 3f32.sqrt();
     let (low, high) = large.bounds().expect("has vertices");
@@ -96,7 +96,7 @@ fn closed_surfaces_stay_closed() {
         assert!((p.abs() - Vec3::splat(corner)).length() < 1e-6, "{p}");
     }
     for mesh in [cube, build("shape = 'sphere'\ntriangles = 500")] {
-        let bumpy = moved(&mesh, &material(noise(), 0.1, 2));
+        let bumpy = moved(&mesh, &material(noise(), 0.1, Some(2)));
         assert!(is_closed(&bumpy) == is_closed(&mesh));
         let mut normals = bumpy.normals.iter();
         assert!(normals.all(|n| (n.length() - 1.0).abs() < 1e-5));
@@ -108,7 +108,7 @@ fn closed_surfaces_stay_closed() {
 #[test]
 fn round_surfaces_stay_round() {
     let sphere = build("shape = 'sphere'");
-    let large = moved(&sphere, &material(white(), 0.5, 1));
+    let large = moved(&sphere, &material(white(), 0.5, Some(1)));
     for (p, n) in large.positions.iter().zip(&large.normals) {
         assert!((p.length() - 1.5).abs() < 0.01, "{p}");
         assert!(n.dot(p.normalize()) > 0.9995, "{n} at {p}");
@@ -125,7 +125,10 @@ fn parts_without_maps_follow() {
     };
     mesh.parts[0].triangles = 0..1;
     mesh.parts.push(second);
-    let materials = [material(white(), 1.0, 0), Material::unlit([1.0; 3], 0.5)];
+    let materials = [
+        material(white(), 1.0, Some(0)),
+        Material::unlit([1.0; 3], 0.5),
+    ];
     let moved = try_moved(&mesh, &materials).expect("fits");
     // Corner 1 belongs to the first alone, corner 3 to the second; the others have half of their angle in either.
     let heights: Vec<f32> = moved.positions.iter().map(|p| p.z).collect();
@@ -135,22 +138,16 @@ fn parts_without_maps_follow() {
 /// Of two texels for an edge, where nothing says how often; fewer cuts where there are many triangles.
 #[test]
 fn levels_are_bounded() {
-    let mut automatic = material(noise(), 0.1, 0);
-    if let Some(d) = &mut automatic.maps.displacement {
-        d.level = None;
-    }
+    let automatic = |map| material(map, 0.1, None);
     // The diagonal spans 16 texels across and 8 down.
-    let plane = moved(&square(0.0, 1.0), &automatic);
+    let plane = moved(&square(0.0, 1.0), &automatic(noise()));
     assert_eq!(plane.triangles.len(), 2 << (2 * 4));
     let mesh = build("shape = 'sphere'\ntriangles = 100_000");
     let fine = Texture::of("fine", [4096, 4096], |_, _| [0; 4]);
-    if let Some(d) = &mut automatic.maps.displacement {
-        d.map = Arc::new(fine);
-    }
-    let level = level(&mesh, std::slice::from_ref(&automatic));
+    let level = level(&mesh, &[automatic(fine)]);
     assert!(mesh.triangles.len() << (2 * level) <= MAX_DISPLACED as usize);
     assert!(level == 2, "{level}");
-    let e = try_moved(&mesh, &[material(white(), f32::INFINITY, 0)]).expect_err("too far");
+    let e = try_moved(&mesh, &[material(white(), f32::INFINITY, Some(0))]).expect_err("too far");
     assert!(e.contains("too large"), "{e}");
 }
 

@@ -14,32 +14,20 @@ pub(crate) fn build(text: &str) -> Mesh {
 }
 
 fn volume(mesh: &Mesh) -> f64 {
-    mesh.triangles
-        .iter()
-        .map(|t| {
-            let [a, b, c] = t.map(|i| mesh.positions[i as usize]);
-            f64::from(a.dot(b.cross(c))) / 6.0
-        })
-        .sum()
+    let cone = |t: &[u32; 3]| {
+        let [a, b, c] = t.map(|i| mesh.positions[i as usize]);
+        f64::from(a.dot(b.cross(c))) / 6.0
+    };
+    mesh.triangles.iter().map(cone).sum()
 }
 
-/// Every edge belongs to two triangles, once each way; V − E + F is the surface's Euler characteristic.
-fn check_closed(name: &str, mesh: &Mesh, euler: i64) {
-    assert!(is_closed(mesh), "{name} is open");
-    let edges = edges_of(mesh);
-    let vertices: HashSet<_> = edges.keys().map(|[from, _]| from).collect();
-    let counts = [vertices.len(), edges.len() / 2, mesh.triangles.len()];
-    let [v, e, f] = counts.map(|n| n as i64);
-    assert_eq!(v - e + f, euler, "{name}");
-    assert!(volume(mesh) > 0.0, "{name} is turned inside out");
-    for n in &mesh.normals {
-        assert!((n.length() - 1.0).abs() < 1e-5, "{name}: normal {n}");
-    }
-}
+const LATHE: &str = "shape = 'lathe'\noffset = 0.05\nprofile = [[0, -1], [0.6, -1], [0.9, 0], [0.4, 0.8], [0.5, 1], [0.3, 0.8], [0.7, 0], [0, -0.8]]";
 
+/// Every edge belongs to two triangles, once each way; V − E + F is the surface's Euler characteristic. No triangle is stretched over the
+/// seam, none is mirrored, and textures stand upright: v falls where y rises, on the outside.
 #[test]
-fn closed_shapes_are_watertight_and_face_outwards() {
-    for (text, euler) in [
+fn closed_shapes_are_watertight_face_outwards_and_are_unwrapped() {
+    for (name, euler) in [
         ("shape = 'sphere'", 2),
         ("shape = 'torus'", 0),
         ("shape = 'box'\nsize = [1, 2, 3]", 2),
@@ -48,26 +36,28 @@ fn closed_shapes_are_watertight_and_face_outwards() {
         ("shape = 'cup'", 2),
         (LATHE, 2),
     ] {
-        let mesh = build(text);
-        check_closed(text, &mesh, euler);
-        check_unwrapped(text, &mesh);
-    }
-}
-
-const LATHE: &str = "shape = 'lathe'\noffset = 0.05\nprofile = [[0, -1], [0.6, -1], [0.9, 0], [0.4, 0.8], [0.5, 1], [0.3, 0.8], [0.7, 0], [0, -0.8]]";
-
-/// No triangle is stretched over the seam, none is mirrored, and textures stand upright: v falls where y rises, on the outside.
-fn check_unwrapped(name: &str, mesh: &Mesh) {
-    assert_eq!(mesh.uvs.len(), mesh.triangles.len(), "{name}");
-    for (uv, t) in mesh.uvs.iter().zip(&mesh.triangles) {
-        let [a, b, c] = *uv;
-        let area = (b - a).perp_dot(c - a);
-        // v runs down: what turns left on the surface turns right on the texture.
-        assert!(area < 0.0, "{name}: {uv:?}");
-        for axis in 0..2 {
-            let all = uv.map(|p| p[axis]);
-            let spread = all.iter().fold(0f32, |m, x| m.max((x - all[0]).abs()));
-            assert!(spread <= 0.5 || spread == 1.0, "{name}: {uv:?} of {t:?}");
+        let mesh = build(name);
+        assert!(is_closed(&mesh), "{name} is open");
+        let edges = edges_of(&mesh);
+        let vertices: HashSet<_> = edges.keys().map(|[from, _]| from).collect();
+        let counts = [vertices.len(), edges.len() / 2, mesh.triangles.len()];
+        let [v, e, f] = counts.map(|n| n as i64);
+        assert_eq!(v - e + f, euler, "{name}");
+        assert!(volume(&mesh) > 0.0, "{name} is turned inside out");
+        for n in &mesh.normals {
+            assert!((n.length() - 1.0).abs() < 1e-5, "{name}: normal {n}");
+        }
+        assert_eq!(mesh.uvs.len(), mesh.triangles.len(), "{name}");
+        for (uv, t) in mesh.uvs.iter().zip(&mesh.triangles) {
+            let [a, b, c] = *uv;
+            // v runs down: what turns left on the surface turns right on the texture.
+            let area = (b - a).perp_dot(c - a);
+            assert!(area < 0.0, "{name}: {uv:?}");
+            for axis in 0..2 {
+                let all = uv.map(|p| p[axis]);
+                let spread = all.iter().fold(0f32, |m, x| m.max((x - all[0]).abs()));
+                assert!(spread <= 0.5 || spread == 1.0, "{name}: {uv:?} of {t:?}");
+            }
         }
     }
 }

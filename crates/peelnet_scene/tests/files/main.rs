@@ -14,10 +14,10 @@ use std::{io, path::Path, sync::Arc};
 
 const CAMERA: &str = "[camera]\nposition = [0, 0, 6]\ntarget = [0, 0, 0]\nnear = 0.1\nfar = 100\n";
 
-/// A PNG image of one colour, a texel high.
-fn image(width: u32, texel: [u8; 4]) -> Vec<u8> {
+/// A PNG image, a texel high.
+fn image(texels: &[[u8; 4]]) -> Vec<u8> {
     let mut bytes = io::Cursor::new(Vec::new());
-    let image = image::RgbaImage::from_pixel(width, 1, image::Rgba(texel));
+    let image = image::RgbaImage::from_raw(texels.len() as u32, 1, texels.concat()).unwrap();
     image.write_to(&mut bytes, image::ImageFormat::Png).unwrap();
     bytes.into_inner()
 }

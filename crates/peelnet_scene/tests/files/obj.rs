@@ -1,6 +1,6 @@
 //! OBJ and MTL files as exporters write them, and as they should not.
 
-use crate::{Loaded, area, load_mesh};
+use crate::{Loaded, area, image, load_mesh};
 use glam::{Vec2, Vec3};
 use peelnet_scene::{Lighting, Wrap};
 
@@ -103,14 +103,8 @@ fn seams_do_not_split_normals() {
 /// Textures of all kinds, options, opacity in a file of its own, heights as normals, vertex colours, Latin-1; what is not drawn is reported.
 #[test]
 fn images_of_materials() {
-    let picture = |texels: [[u8; 4]; 2]| {
-        let mut bytes = std::io::Cursor::new(Vec::new());
-        let image = image::RgbaImage::from_raw(2, 1, texels.concat()).expect("two texels");
-        let done = image.write_to(&mut bytes, image::ImageFormat::Png);
-        done.map(|()| bytes.into_inner()).expect("encodes")
-    };
-    let color = picture([[200, 0, 0, 9], [0, 100, 0, 9]]);
-    let leaf = picture([[0, 0, 0, 255], [255, 255, 255, 255]]);
+    let color = image(&[[200, 0, 0, 9], [0, 100, 0, 9]]);
+    let leaf = image(&[[0, 0, 0, 255], [255, 255, 255, 255]]);
     let mtl = b"newmtl m\nKd 1 1 1\nmap_Kd -clamp on a b.png\nmap_d leaf.png\nmap_Bump -bm 2 -s 2 2 leaf.png\nmap_Pr leaf.png\nmap_Ke a b.png\nmap_Ks gone.png\n# caf\xe9\n";
     let obj = "mtllib a.mtl\nv 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 1 1 0 1 1 1\nvt 0 0\nvt 1 0\nvt 1 1\nusemtl m\nf 1/1 2/2 3/3\n";
     let files: [(&str, &[u8]); 4] = [

@@ -36,10 +36,9 @@ fn binary(triangles: &[[Vec3; 3]], header: &[u8]) -> Vec<u8> {
 }
 
 fn text(triangles: &[[Vec3; 3]]) -> String {
+    let vertex = |v: Vec3| format!("vertex {} {} {}\n", v.x, v.y, v.z);
     let facets = triangles.iter().map(|t| {
-        let vertices = t
-            .map(|v| format!("vertex {} {} {}\n", v.x, v.y, v.z))
-            .concat();
+        let vertices = t.map(vertex).concat();
         format!("facet normal 0 0 0\n outer loop\n{vertices} endloop\nendfacet\n")
     });
     let facets: String = facets.collect();
@@ -84,10 +83,8 @@ fn round_surfaces_are_smooth() {
     let text = format!("{CAMERA}[[object]]\nmesh = {{ shape = 'sphere' }}\n");
     let scene = load_files(&[("s.toml", text.as_bytes())]).unwrap();
     let sphere = &scene.objects[0].mesh;
-    let soup = sphere.triangles.iter();
-    let soup: Vec<_> = soup
-        .map(|t| t.map(|i| sphere.positions[i as usize]))
-        .collect();
+    let at = |i: u32| sphere.positions[i as usize];
+    let soup: Vec<_> = sphere.triangles.iter().map(|t| t.map(at)).collect();
     let (m, ..) = load(&binary(&soup, b"")).unwrap();
     let bits = |p: &Vec3| p.to_array().map(|x| (x + 0.0).to_bits());
     let distinct: std::collections::HashSet<_> = m.positions.iter().map(bits).collect();
