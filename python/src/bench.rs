@@ -175,12 +175,7 @@ impl Recommendation {
 /// Rows of earlier results: what `bench` returned, or a folder or results.json that the command wrote.
 fn rows_of(results: &Bound<'_, PyAny>) -> PyResult<Vec<Row>> {
     if let Ok(path) = results.extract::<PathBuf>() {
-        let file = if path.is_dir() {
-            path.join("results.json")
-        } else {
-            path
-        };
-        let read = Results::<Bench>::read(&file).map_err(raised)?;
+        let read = Results::<Bench>::read(&path).map_err(raised)?;
         return Ok(read.measured.rows);
     }
     let convert = results.py().import("peelnet._convert")?;

@@ -72,7 +72,7 @@ const REFUSED: &str = "
     2 | extract two.toml --out d --augment 4294967295 | at most 65536 & --augment
     2 | extract two.toml two.toml --out d | rename one
     1 | extract stained.toml --out d | transmission_color
-    2 | bench two.toml two.toml --out b | two
+    2 | bench two.toml two.toml --out b | named 'two' & two.toml) & rename one
     2 | bench two.toml --path --frames 0 --out b | at least one frame
     1 | bench two.toml --path --frames 1000 --methods abuffer --out b | 1000 frames of 1024x768 & --size
     2 | bench two.toml --designs own --out b | scene 'two' & without it

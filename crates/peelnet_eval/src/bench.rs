@@ -101,21 +101,3 @@ pub fn bench_watched(
         rows: partial.finish(),
     })
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Rows are found by their scene's name: the second of two would pass for done.
-    #[test]
-    fn two_scenes_of_one_name_are_refused_with_both_files() {
-        let cups = peelnet_scene::suite::load("cups").unwrap();
-        let second = Scene {
-            source: "b/x.toml".into(),
-            ..cups.clone()
-        };
-        let text = check_names(&[cups, second]).unwrap_err().to_string();
-        let both = text.contains("cups.toml") && text.contains("b/x.toml");
-        assert!(both, "{text}");
-    }
-}

@@ -140,31 +140,16 @@ mod tests {
     use crate::rows::tests::row;
     use serde_json::json;
 
+    /// Views that are done are known; rows of other settings, and rows that somebody changed, are refused.
     #[test]
-    fn it_goes_on_where_it_stopped() {
+    fn it_goes_on_with_what_was_measured_so() {
         let dir = tempfile::tempdir().unwrap();
         let plan = json!({"size": [4, 4], "methods": ["a"]});
         let mut first = Partial::resume(dir.path(), plan.clone()).unwrap();
-        first
-            .push(vec![row("s", 0, "a", 1.0), row("s", 0, "b", 2.0)])
-            .unwrap();
-        drop(first);
-        let mut second = Partial::resume(dir.path(), plan).unwrap();
-        assert_eq!((second.done("s"), second.done("t")), (vec![0], vec![]));
-        second.push(vec![row("s", 1, "a", 3.0)]).unwrap();
-        assert_eq!(second.done("s"), [0, 1]);
-        assert_eq!(second.finish().len(), 3);
-        Partial::discard(dir.path());
-        assert_eq!(std::fs::read_dir(dir.path()).unwrap().count(), 0);
-    }
-
-    /// Rows of other settings, and rows that somebody changed.
-    #[test]
-    fn what_was_not_measured_so_is_refused() {
-        let dir = tempfile::tempdir().unwrap();
-        let plan = json!({"size": [4, 4], "methods": ["a"]});
-        let mut first = Partial::new(Some(dir.path()), plan.clone());
-        first.push(vec![row("s", 0, "a", 2.0)]).unwrap();
+        let rows = [(0, 2.0), (0, 3.0), (1, 4.0)].map(|(view, mse)| row("s", view, "a", mse));
+        first.push(rows.to_vec()).unwrap();
+        let second = Partial::resume(dir.path(), plan.clone()).unwrap();
+        assert_eq!((second.done("s"), second.done("t")), (vec![0, 1], vec![]));
         let refused = |plan: &serde_json::Value| {
             let resumed = Partial::resume(dir.path(), plan.clone());
             resumed.unwrap_err().to_string()

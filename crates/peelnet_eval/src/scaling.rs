@@ -230,30 +230,24 @@ fn slope(points: impl Iterator<Item = (f64, f64)>) -> Option<f64> {
 mod tests {
     use super::*;
 
-    fn row(method: &str, series: Series, value: u64, time_ms: f64, bytes: f64) -> Growth {
-        Growth {
-            method: method.to_owned(),
-            series,
-            value,
-            time_ms,
-            bytes_per_pixel: bytes,
-        }
-    }
-
     /// t = n² and bytes = 24 n; a constant cost in the lower steps is not fitted.
     #[test]
     fn powers_are_found() {
-        let rows: Vec<Growth> = [1u64, 2, 4, 8, 16, 32]
-            .into_iter()
-            .map(|n| {
-                let t = if n < 8 { 50.0 } else { (n * n) as f64 };
-                row("x", Series::Fragments, n, t, 24.0 * n as f64)
-            })
-            .collect();
+        let row = |series, value, time_ms, bytes_per_pixel| Growth {
+            method: "x".to_owned(),
+            series,
+            value,
+            time_ms,
+            bytes_per_pixel,
+        };
+        let rows = [1, 2, 4, 8, 16, 32].map(|n: u64| {
+            let t = if n < 8 { 50.0 } else { (n * n) as f64 };
+            row(Series::Fragments, n, t, 24.0 * n as f64)
+        });
         let e = &exponents(&rows)[0];
         assert!((e.time.unwrap() - 2.0).abs() < 1e-9 && (e.bytes.unwrap() - 1.0).abs() < 1e-9);
         // Of the whole frame, where that grows.
-        let pixels = [64u64, 256, 1024].map(|n| row("x", Series::Pixels, n, n as f64, 10.0));
+        let pixels = [64u64, 256, 1024].map(|n| row(Series::Pixels, n, n as f64, 10.0));
         assert!((exponents(&pixels)[0].bytes.unwrap() - 1.0).abs() < 1e-9);
         assert_eq!(exponents(&rows[..1])[0].time, None);
     }

@@ -34,17 +34,6 @@ pub enum Output {
 }
 
 impl Output {
-    /// The name in files.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Transmittance => "transmittance",
-            Self::AnchoredShare => "anchored-share",
-            Self::AnchoredShareSeparateEnds => "anchored-share-separate-ends",
-            Self::BoundedShare => "bounded-share",
-            Self::Color => "color",
-        }
-    }
-
     /// The number of values.
     pub const fn count(self) -> usize {
         match self {
@@ -94,9 +83,10 @@ impl Output {
     }
 }
 
+/// The name in files.
 impl fmt::Display for Output {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
+        self.serialize(f)
     }
 }
 

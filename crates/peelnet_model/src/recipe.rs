@@ -106,15 +106,12 @@ impl PixelLoss {
         Self::WeightedTransmittance,
         Self::Transmittance,
     ];
+}
 
-    /// The name in files and on the command line.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Image => "image",
-            Self::Contributions => "contributions",
-            Self::WeightedTransmittance => "weighted-transmittance",
-            Self::Transmittance => "transmittance",
-        }
+/// The name in files and on the command line.
+impl fmt::Display for PixelLoss {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.serialize(f)
     }
 }
 
@@ -122,8 +119,8 @@ impl FromStr for PixelLoss {
     type Err = String;
 
     fn from_str(name: &str) -> Result<Self, String> {
-        let found = Self::ALL.into_iter().find(|l| l.name() == name);
-        let names = || Self::ALL.map(Self::name).join(", ");
+        let found = Self::ALL.into_iter().find(|l| l.to_string() == name);
+        let names = || Self::ALL.map(|l| l.to_string()).join(", ");
         found.ok_or_else(|| format!("no such loss; there are {}", names()))
     }
 }

@@ -45,28 +45,6 @@ fn a_model_survives_its_file() {
 }
 
 #[test]
-fn the_file_is_a_state_dict() {
-    let bytes = model().to_bytes().unwrap();
-    let tensors = SafeTensors::deserialize(&bytes).unwrap();
-    assert_eq!(tensors.len(), 6);
-    for (name, shape) in [
-        ("layers.0.weight", &[10, 3][..]),
-        ("layers.1.weight", &[8, 10]),
-        ("layers.2.bias", &[1]),
-    ] {
-        assert_eq!(tensors.tensor(name).unwrap().shape(), shape);
-    }
-    let (_, header) = SafeTensors::read_metadata(&bytes).unwrap();
-    let json = &header.metadata().as_ref().unwrap()["peelnet"];
-    let value: Value = serde_json::from_str(json).unwrap();
-    assert_eq!(value["mlp"]["topology"], "3-10-8-1");
-    assert_eq!(value["mlp"]["hidden"], "relu");
-    assert_eq!(value["recipe"], "thesis");
-    assert_eq!(value["output"], "transmittance");
-    assert_eq!(value["inputs"][0]["name"], "linear_depth");
-}
-
-#[test]
 fn raw_features_are_normalised_and_outputs_guarded() {
     let mut model = model();
     // One layer that passes the first input on.
@@ -186,6 +164,7 @@ fn bad_metadata() {
             json!("tanh"),
             "`tanh`, expected one of `relu`",
         ),
+        ("/mlp/topology", json!(3), "expected a string"),
         ("/inputs/1/name", json!("sum"), "lists (linear_depth, sum, "),
         ("/output", json!("color"), "thesis does not predict color"),
         ("/inputs/2/scale", json!(null), "null, expected f32"),

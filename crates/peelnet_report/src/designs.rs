@@ -28,7 +28,7 @@ impl Results<Designs> {
                 ("records", &|l| l.row(|r| r.records.clone())),
                 ("range", &|l| l.row(|r| r.range.clone())),
                 ("sums", &|l| l.row(sums)),
-                ("loss", &|l| l.row(|r| r.loss.name().to_owned())),
+                ("loss", &|l| l.row(|r| r.loss.to_string())),
                 ("bytes", &|l| l.row(|r| r.bytes.to_string())),
                 ("network", &|l| l.row(|r| r.topology.clone())),
                 ("parameters", &|l| l.row(|r| r.parameters.to_string())),

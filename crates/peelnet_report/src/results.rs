@@ -76,11 +76,13 @@ impl<T: Measurement> Results<T> {
 }
 
 impl<T: DeserializeOwned> Results<T> {
-    /// Reads what was written as JSON.
+    /// Reads what was written as JSON: a file, or the `results.json` in a folder.
     ///
     /// # Errors
     /// A file that cannot be read, or that holds something else.
     pub fn read(path: &Path) -> Result<Self, ReportError> {
+        let file = path.join("results.json");
+        let path = if path.is_dir() { &*file } else { path };
         let bytes = peelnet_files::read(path, MAX_BYTES);
         let bytes = bytes.map_err(ReportError::of(path, "cannot read"))?;
         let read = serde_json::from_slice(&bytes);

@@ -134,16 +134,13 @@ pub(crate) fn number(value: Option<f64>, digits: usize) -> String {
 mod tests {
     use super::*;
 
-    fn table() -> Table {
-        Table::new(["name", "ms"], [vec!["<a|b>".to_owned(), "1".to_owned()]])
-    }
-
+    /// Markdown has one bar more than columns; plain text is aligned.
     #[test]
-    fn markdown_has_one_bar_more_than_columns() {
-        assert_eq!(
-            table().markdown(),
-            "| name | ms |\n|---|---:|\n| &lt;a\\|b> | 1 |\n"
-        );
+    fn tables_are_markdown_and_plain_text() {
+        let table = Table::new(["name", "ms"], [vec!["<a|b>".to_owned(), "1".to_owned()]]);
+        let markdown = "| name | ms |\n|---|---:|\n| &lt;a\\|b> | 1 |\n";
+        assert_eq!(table.markdown(), markdown);
+        assert_eq!(table.plain(), "name   ms\n<a|b>   1\n");
     }
 
     /// A cell cannot end its row, nor move a terminal's cursor.
@@ -157,10 +154,5 @@ mod tests {
             );
         }
         assert_eq!(table.plain().lines().count(), 2);
-    }
-
-    #[test]
-    fn plain_text_is_aligned() {
-        assert_eq!(table().plain(), "name   ms\n<a|b>   1\n");
     }
 }

@@ -57,11 +57,6 @@ struct Header {
 /// Columns of the history tensor; losses as 64-bit floats, because text would round them.
 const HISTORY: usize = 4;
 
-/// No state of a network with so many parameters has more bytes: four tensors of them, the history, and a header.
-const fn most_bytes(parameters: usize) -> u64 {
-    16 * parameters as u64 + 8 * HISTORY as u64 * MAX_EPOCHS as u64 + (1 << 20)
-}
-
 /// What to do about a checkpoint that cannot be read.
 const DAMAGED: &str = "delete the checkpoint folder, or start without it";
 
@@ -150,7 +145,10 @@ impl Progress {
         device: &Device,
     ) -> Result<Self, TrainError> {
         let path = folder.join(FILES[0].0);
-        let read = match peelnet_files::read(&path, most_bytes(parameters)) {
+        // No state has more bytes: four tensors of parameters, the history, and a header.
+        let history = 8 * HISTORY as u64 * u64::from(MAX_EPOCHS);
+        let most = 16 * parameters as u64 + history + (1 << 20);
+        let read = match peelnet_files::read(&path, most) {
             Err(e) if e.kind() == std::io::ErrorKind::NotFound => {
                 Err("there is no such file, so there is nothing to resume".to_owned())
             }

@@ -113,28 +113,26 @@ mod tests {
         }
     }
 
+    /// The table has a line for each epoch; the picture survives no epoch, one epoch and zero loss.
     #[test]
-    fn the_table_has_a_line_per_epoch() {
+    fn curves_are_written() {
         let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("new/curve.csv");
-        write_curve(&path, &[row(1, 0.25, Some(0.5)), row(2, 0.125, None)]).unwrap();
+        let written = |name: &str, history: &[EpochReport]| {
+            let path = folder.path().join(name);
+            write_curve(&path, history).unwrap();
+            std::fs::read_to_string(path).unwrap()
+        };
+        let rows = [row(1, 0.25, Some(0.5)), row(2, 0.125, None)];
         assert_eq!(
-            std::fs::read_to_string(path).unwrap(),
+            written("new/curve.csv", &rows),
             "epoch,train_loss,held_out_loss,seconds,rows_per_s\n1,0.25,0.5,0.5000,1234\n2,0.125,,0.5000,1234\n"
         );
-    }
-
-    #[test]
-    fn the_picture_survives_no_epoch_one_epoch_and_zero_loss() {
-        let folder = tempfile::tempdir().unwrap();
         for (name, history) in [
             ("none.svg", vec![]),
             ("one.SVG", vec![row(1, 0.1, Some(0.1))]),
             ("zero.svg", vec![row(1, 0.0, None), row(2, 0.0, None)]),
         ] {
-            let path = folder.path().join(name);
-            write_curve(&path, &history).unwrap();
-            assert!(std::fs::read_to_string(path).unwrap().ends_with("</svg>\n"));
+            assert!(written(name, &history).ends_with("</svg>\n"));
         }
     }
 }

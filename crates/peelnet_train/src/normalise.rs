@@ -134,30 +134,4 @@ mod tests {
             assert_eq!(to, [0.0, 0.0]);
         }
     }
-
-    /// Merging blocks of any size gives the moments of all values. Both ways round each of n sums of terms of one sign in 64 bits: the
-    /// relative error is at most n ε, and that of the mean n ε times the mean magnitude of the values.
-    #[test]
-    fn merged_blocks_have_the_moments_of_all_values() {
-        let mut random = crate::sampler::Stream::Weights.of(5);
-        for (n, offset) in [(1u32, 0.0), (7, 3.0), (5000, 1e4), (20_000, -40.0)] {
-            let values: Vec<f32> = (0..n).map(|_| offset + 8.0 * random.unit()).collect();
-            let rows: Vec<u32> = (0..n).collect();
-            let all = Moments::over(&values, &rows);
-            for size in [1, 3, 1024] {
-                let blocks = rows.chunks(size).map(|block| Moments::over(&values, block));
-                let merged = blocks.fold(Moments::NONE, Moments::merge);
-                let rounding = f64::from(n) * f64::EPSILON;
-                let magnitude = f64::from(offset.abs()) + 8.0;
-                assert!((merged.mean - all.mean).abs() <= rounding * magnitude);
-                // The deviations carry the error of the mean, too.
-                let squares = rounding * (all.squares + f64::from(n) * magnitude);
-                assert!((merged.squares - all.squares).abs() <= squares);
-                assert_eq!(
-                    (merged.count, merged.min, merged.max),
-                    (u64::from(n), all.min, all.max)
-                );
-            }
-        }
-    }
 }

@@ -3,10 +3,9 @@
 const FLICKER: f64 = 0.5;
 
 /// What the viewport shows; the numbers of `display.wgsl`.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
 pub enum Mode {
-    #[default]
     One = 0,
     /// In place of [`Mode::Flicker`] while the second picture's turn lasts.
     Second = 1,

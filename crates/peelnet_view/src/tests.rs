@@ -309,29 +309,6 @@ fn all_methods_are_measured_on_the_view() {
     assert!(measured.points.iter().any(|p| p.on_front));
 }
 
-/// What does not open is one message, and the last scene stays.
-#[test]
-fn bad_files_leave_the_view() {
-    let mut w = window("boxes", "wboit-eq9");
-    let folder = tempfile::tempdir().unwrap();
-    let bad = folder.path().join("bad.glb");
-    fs::write(&bad, "no mesh").unwrap();
-    for (path, says) in [
-        (bad.clone(), "bad.glb"),
-        (folder.path().join("none.toml"), "none.toml"),
-        ("nowhere".into(), "nowhere"),
-    ] {
-        w.state_mut().open(Source::named(path), None);
-        steps(&mut w);
-        assert!(w.query_by_label_contains(says).is_some(), "{says}");
-        assert_eq!(stage(&w).scene.name, "boxes");
-    }
-    w.state_mut().open_network(Source::named(bad));
-    steps(&mut w);
-    assert!(w.state().first.network.is_none());
-    assert_eq!(w.state().first.failure, None);
-}
-
 /// The command of a view and a page's address name what is shown; an address is read as it was written.
 #[test]
 fn links_show_the_same_again() {

@@ -298,12 +298,7 @@ pub(super) fn compared(
 
 /// A bench's `results.json`, or the folder that holds it.
 pub(super) fn read(path: &Path) -> Result<Results<Bench>, Failure> {
-    let file = if path.is_dir() {
-        path.join("results.json")
-    } else {
-        path.to_owned()
-    };
-    Results::read(&file).map_err(|e| {
+    Results::read(path).map_err(|e| {
         let text = error_line(&e);
         Failure::failed(format!(
             "{text}; make it with: peelnet bench SCENE --out DIR"

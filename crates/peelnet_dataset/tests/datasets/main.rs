@@ -131,15 +131,6 @@ fn write_one(folder: &Path, format: Format, rows: &FragmentBatch, batch_rows: us
     writer.finish().unwrap()
 }
 
-/// All rows that [`write`] writes, in order.
-fn all_rows() -> FragmentBatch {
-    let mut all = FragmentBatch::default();
-    for rows in (0..4).map(rows_of) {
-        all.extend_from(&rows, 0..rows.len());
-    }
-    all
-}
-
 /// Bit patterns, so that −0 and 0 differ.
 fn bits(rows: &FragmentBatch) -> [Vec<u32>; 14] {
     Column::ALL.map(|c| match rows.column(c) {

@@ -324,16 +324,6 @@ mod tests {
     }
 
     #[test]
-    fn a_hull_has_thirteen_axes() {
-        let all: Vec<_> = directions().collect();
-        assert_eq!(all.len(), 13);
-        assert!(!all.contains(&DVec3::ZERO));
-        for (i, a) in all.iter().enumerate() {
-            assert!(all[..i].iter().all(|b| a != b && *a != -*b));
-        }
-    }
-
-    #[test]
     fn the_worst_is_kept_and_a_nan_is_worst() {
         let mut findings = Findings::default();
         let mut worst = |value, limit, place: &str| {

@@ -119,12 +119,6 @@ impl Kind {
         in_front * passing(&self.fragments[i]).powf(own_share)
     }
 
-    /// Whether no other fragment has the depth of the `i`-th.
-    pub(super) fn is_alone(&self, i: usize) -> bool {
-        let depth = self.fragments[i].depth;
-        self.fragments.iter().filter(|f| f.depth == depth).count() == 1
-    }
-
     /// The sum of what fragments show or hide, unnormalised: their opacities times their colours' brightest component, or `C_0`'s.
     pub(super) fn terms(&self) -> f64 {
         let brightest = |c: [f32; 3]| c.into_iter().fold(1.0, f32::max);
@@ -248,7 +242,10 @@ impl Trial {
         }
         let shown = known.kinds.iter().map(|kind| {
             let mut shown = [None; 3];
-            let alone = (0..kind.fragments.len()).filter(|&i| kind.is_alone(i));
+            let alone = (0..kind.fragments.len()).filter(|&i| {
+                let same = |f: &&Fragment| f.depth == kind.fragments[i].depth;
+                kind.fragments.iter().filter(same).count() == 1
+            });
             for ((place, i), channel) in shown.iter_mut().zip(alone).zip(0..) {
                 *place = Some(i);
                 // A layer is an object of two triangles.

@@ -100,23 +100,19 @@ mod tests {
     use super::*;
     use crate::testing::row;
 
-    fn text(deep: [f64; 2]) -> String {
-        findings(&[
-            row("sixteen-025", "wboit-papakostas", 10.0),
-            row("sixteen-025", "deep-thesis", deep[0]),
-            row("sixteen-085", "wboit-papakostas", 10.0),
-            row("sixteen-085", "deep-thesis", deep[1]),
-        ])
-        .join("\n")
-    }
-
     #[test]
     fn both_directions_are_told_alike() {
-        let good = text([5.0, 5.0]);
-        assert_eq!(good.matches("is kept:").count(), 2, "{good}");
-        assert!(good.contains("the thesis reports 0.74"), "{good}");
-        let bad = text([20.0, 20.0]);
-        assert_eq!(bad.matches("is not kept:").count(), 2, "{bad}");
-        assert!(bad.contains("sixteen-085 2.00"), "{bad}");
+        for (error, verdict, words) in [
+            (5.0, "is kept:", "the thesis reports 0.74"),
+            (20.0, "is not kept:", "sixteen-085 2.00"),
+        ] {
+            let rows = ["sixteen-025", "sixteen-085"].map(|scene| {
+                let deep = row(scene, "deep-thesis", error);
+                [row(scene, "wboit-papakostas", 10.0), deep]
+            });
+            let text = findings(rows.as_flattened()).join("\n");
+            assert_eq!(text.matches(verdict).count(), 2, "{text}");
+            assert!(text.contains(words), "{text}");
+        }
     }
 }
