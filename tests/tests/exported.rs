@@ -180,7 +180,7 @@ fn evaluate(gpu: &Gpu, model: &Model, text: &str, rows: &[Vec<f32>]) -> Vec<f32>
     let read_back = wgsl::write_string(&module, &info, wgsl::WriterFlags::empty()).unwrap();
     let mut flat: Vec<f32> = rows.iter().flatten().copied().collect();
     flat.resize(flat.len().next_multiple_of(4), 0.0);
-    let (quads, _) = flat.as_chunks();
+    let (quads, _) = flat.as_chunks::<4>();
     let count = rows.len() * outputs;
     gpu.run(&read_back, quads, count, count as u32).unwrap()
 }

@@ -29,12 +29,15 @@ pub struct Settings {
 pub const FILLED: [f64; 3] = [0.5, 0.75, 1.0];
 
 /// Times an effect of a scene: the frame as it is and without the effect, drawn in turn. Pictures of both go to the folder.
-fn cost(
+///
+/// # Errors
+/// What drawing meets.
+pub fn cost(
     gpu: &Gpu,
     scene: &Scene,
     effect: Effect,
     settings: &Settings,
-    folder: &Path,
+    folder: Option<&Path>,
 ) -> Result<Cost, EvalError> {
     let plain = scene.without(effect);
     let name = format!("{} ({effect})", settings.method);
@@ -45,8 +48,10 @@ fn cost(
         let drawn = stage.image(ready, &scene.views[0])?;
         bytes[k] = drawn.stats.bytes_per_pixel;
         passes[k] = drawn.stats.geometry_passes + drawn.stats.fullscreen_passes;
-        let file = picture_of(folder, &scene.name, effect.name(), k == 0);
-        drawn.image.save(&file).map_err(stage.failed(&name))?;
+        if let Some(folder) = folder {
+            let file = picture_of(folder, &scene.name, effect.name(), k == 0);
+            drawn.image.save(&file).map_err(stage.failed(&name))?;
+        }
     }
     let ms = times(stages, &scene.views[0], settings.frames)?;
     Ok(Cost {
@@ -225,7 +230,7 @@ pub fn measure(
         let census = Census::of(scene);
         for effect in Effect::ALL.into_iter().filter(|e| census.has(*e)) {
             next(scene, effect.to_string())?;
-            let cost = cost(gpu, scene, effect, settings, folder)?;
+            let cost = cost(gpu, scene, effect, settings, Some(folder))?;
             found.costs.push(cost);
         }
         next(scene, "shading and transparency".to_owned())?;
