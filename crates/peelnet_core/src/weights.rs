@@ -17,6 +17,7 @@ pub enum Weight {
     InversePower {
         /// Exponent, a whole number so that it is a repeated product.
         k: u32,
+        /// Offset in scene units.
         epsilon: f32,
     },
     /// `10 / (1 + 10 (z k)⁵)`, which the paper uses for smoke.

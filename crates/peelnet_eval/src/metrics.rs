@@ -41,6 +41,7 @@ pub struct Differences {
     pub psnr: Option<f64>,
     /// 99th percentile (nearest rank) of the pixel error: the largest difference of the three channels, 0–255 scale.
     pub p99_error: f64,
+    /// The largest pixel error, 0–255 scale.
     pub max_error: f64,
     pub covered_pixels: u64,
     /// Pixels that are brighter than the exact image in no channel and darker by more than [`DARK`] in some channel.

@@ -48,6 +48,7 @@ pub struct Row {
     pub transmittance_error: Option<f64>,
     pub contour_pairs: Option<f64>,
     pub p99_error: f64,
+    /// The largest pixel error, 0–255 scale.
     pub max_error: f64,
     pub covered_pixels: u64,
     pub dark_pixels: u64,

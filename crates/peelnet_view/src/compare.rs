@@ -1,5 +1,6 @@
 //! How one or two pictures are shown.
 
+/// Seconds that each of two pictures is shown.
 const FLICKER: f64 = 0.5;
 
 /// What the viewport shows; the numbers of `display.wgsl`.
