@@ -121,6 +121,7 @@ pub(crate) fn unit_from_depth(far: f32) -> f32 {
 mod tests {
     use super::*;
     use peelnet_shaders::naga;
+    use std::mem::offset_of;
 
     #[test]
     fn the_unit_of_depth_is_the_next_power_of_two() {
@@ -136,35 +137,34 @@ mod tests {
         }
     }
 
-    /// Names of a struct's members in the linked text, and its size.
-    fn members(module: &naga::Module, name: &str) -> (Vec<String>, usize) {
+    /// Names, order and offsets of a struct's members in the linked text.
+    fn members(module: &naga::Module, name: &str) -> (Vec<(String, usize)>, usize) {
         let found = module.types.iter().find_map(|(_, t)| match &t.inner {
             // The linker puts the module's path before the name.
             naga::TypeInner::Struct { members, span }
                 if t.name.as_ref().is_some_and(|n| n.ends_with(name)) =>
             {
-                let names = members.iter().filter_map(|m| m.name.clone());
-                Some((names.collect(), *span as usize))
+                let members = members.iter().map(|m| {
+                    let name = m.name.clone().unwrap_or_default();
+                    (name, m.offset as usize)
+                });
+                Some((members.collect(), *span as usize))
             }
             _ => None,
         });
         found.unwrap_or_else(|| panic!("the shader has no struct {name}"))
     }
 
-    /// The same of our struct, without what fills it up at its end. A `Pod` has no holes: members of the same names, in the same size, lie in
-    /// the same places.
-    fn ours<T: Pod + std::fmt::Debug>() -> (Vec<String>, usize) {
-        let text = format!("{:?}", T::zeroed());
-        let (_, fields) = text.split_once('{').expect("a struct");
-        let names = fields
-            .split(':')
-            .filter_map(|part| part.split(' ').next_back());
-        let names = names
-            .map(str::to_owned)
-            .filter(|n| !["pad", "}"].contains(&n.as_str()));
-        (names.collect(), size_of::<T>())
+    macro_rules! twin {
+        ($module:expr, $wgsl:literal, $rust:ty, [$($field:ident),*]) => {{
+            let (members, span) = members($module, $wgsl);
+            let ours = vec![$((stringify!($field).to_owned(), offset_of!($rust, $field))),*];
+            assert_eq!(members, ours, "{}", $wgsl);
+            assert_eq!(span, size_of::<$rust>(), "size of {}", $wgsl);
+        }};
     }
 
+    /// Every struct lies in memory as the shaders read it.
     #[test]
     fn structs_lie_as_shaders_read_them() {
         let features = ["lit", "pbr", "sun", "numbered", "material"];
@@ -172,8 +172,41 @@ mod tests {
             peelnet_shaders::link("methods::blended::gather", &features, &[]).expect("links");
         let capabilities = naga::valid::Capabilities::empty();
         let (module, _) = peelnet_shaders::validate("twins", &text, capabilities).expect("valid");
-        assert_eq!(members(&module, "Light"), ours::<LightData>());
-        assert_eq!(members(&module, "Material"), ours::<MaterialData>());
-        assert_eq!(members(&module, "Camera"), ours::<CameraUniform>());
+        twin!(&module, "Light", LightData, [position, is_point, color]);
+        twin!(
+            &module,
+            "Material",
+            MaterialData,
+            [
+                color,
+                specular_or_metallic,
+                shininess_or_roughness,
+                alpha_cutoff,
+                layer,
+                emission,
+                normal_scale,
+                transmission,
+                occlusion_strength
+            ]
+        );
+        twin!(
+            &module,
+            "Camera",
+            CameraUniform,
+            [
+                clip_from_world,
+                eye,
+                light_count,
+                frame_size,
+                sample_seed,
+                sample_view,
+                sample_threshold,
+                unit_from_depth,
+                warp_inverse_near,
+                warp_near,
+                warp_scale,
+                window_depth_at_infinity
+            ]
+        );
     }
 }
