@@ -71,7 +71,7 @@ fn lines(rows: &FragmentBatch, range: Range<usize>) -> Vec<u8> {
                 ColumnSlice::U32(v) => 1 << 32 | u64::from(v[i]),
             };
             // The upper bits of a product with the golden ratio depend on all bits of the number.
-            let place = number.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 52;
+            let place = number.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> (64 - KNOWN.ilog2());
             let (known, start) = (&mut known[place as usize], text.len());
             match known {
                 Some((other, written)) if *other == number => {
