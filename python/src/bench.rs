@@ -15,7 +15,7 @@ use peelnet::{
         Partial, Row,
         bench::{Bench, Progress, bench_watched},
         compare::Plan,
-        front::{BASE, Point},
+        front::Point,
         recommend::{Budget, judged},
     },
     report::Results,
@@ -27,12 +27,8 @@ use std::path::PathBuf;
 fn compared(named: Option<Vec<String>>, models: Vec<peelnet::Model>) -> PyResult<Compared> {
     let named = named.map(|names| names.iter().map(|name| method(name)).collect());
     let named = named.transpose()?;
-    let mut compared = Compared::new(named, models, MethodSpec::compared).map_err(raised)?;
-    let base = method(BASE)?;
-    if !compared.methods.contains(&base) {
-        compared.methods.push(base);
-    }
-    Ok(compared)
+    let compared = Compared::new(named, models, MethodSpec::compared);
+    compared.and_then(Compared::with_base).map_err(raised)
 }
 
 fn measured<'py>(

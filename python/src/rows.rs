@@ -250,8 +250,7 @@ fn in_memory(
     reporter: &Reporter<Progress>,
 ) -> Result<Rows, Failure> {
     let start = Instant::now();
-    let mut mine = items::items(scenes, options)?;
-    mine.retain(|item| options.shard.is_none_or(|s| s.contains(item.index)));
+    let mine = items::shard_items(scenes, options)?;
     let (mut batches, mut rows) = (Vec::new(), 0);
     let say = |done: usize, rows: u64| {
         reporter.say(Progress {

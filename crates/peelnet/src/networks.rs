@@ -2,6 +2,7 @@
 
 use crate::Failure;
 use peelnet_dataset::{DatasetError, create_object, is_remote, read_object};
+use peelnet_eval::front::BASE;
 use peelnet_export::ExportError;
 use peelnet_gpu::Gpu;
 use peelnet_model::{MAX_BYTES, Model, ModelError, Recipe};
@@ -185,6 +186,18 @@ impl Compared {
             models,
             left_out,
         })
+    }
+
+    /// With the method that times are ratios to, where it is not among them.
+    ///
+    /// # Errors
+    /// None: the name is a method's.
+    pub fn with_base(mut self) -> Result<Self, Failure> {
+        let base = BASE.parse()?;
+        if !self.methods.contains(&base) {
+            self.methods.push(base);
+        }
+        Ok(self)
     }
 
     /// The texts that the learned methods draw with.

@@ -3,7 +3,7 @@
 use crate::{
     ExtractOptions, PeelError,
     extract::{Outbox, peel, stream},
-    items::items,
+    items::shard_items,
 };
 use peelnet_dataset::FragmentBatch;
 use peelnet_gpu::Gpu;
@@ -42,8 +42,7 @@ pub fn batches(
     scenes: &[Scene],
     options: &ExtractOptions,
 ) -> Result<Batches, PeelError> {
-    let mut mine = items(scenes, options)?;
-    mine.retain(|part| options.shard.is_none_or(|s| s.contains(part.index)));
+    let mine = shard_items(scenes, options)?;
     let (gpu, scenes, options) = (gpu.clone(), scenes.to_vec(), options.clone());
     let (send, rows) = sync_channel(1);
     let peeling = std::thread::spawn(move || {

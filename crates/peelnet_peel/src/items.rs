@@ -4,6 +4,16 @@ use crate::{ExtractOptions, PeelError};
 use peelnet_dataset::{CameraInfo, MAX_WORK_ITEMS, Part};
 use peelnet_scene::{Camera, Scene};
 
+/// The work items of the options' shard.
+///
+/// # Errors
+/// As [`items`].
+pub fn shard_items(scenes: &[Scene], options: &ExtractOptions) -> Result<Vec<Part>, PeelError> {
+    let mut all = items(scenes, options)?;
+    all.retain(|part| options.shard.is_none_or(|s| s.contains(part.index)));
+    Ok(all)
+}
+
 /// All work items of a dataset, whatever the shard, as parts without rows: scene by scene, copy by copy, view by view. Cameras are the
 /// scenes' own.
 ///

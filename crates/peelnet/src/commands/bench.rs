@@ -9,7 +9,6 @@ use peelnet_eval::{
     bench::{Bench, Progress, bench_watched},
     compare::Plan,
     effects::{self, Effects},
-    front::BASE,
     path::{self, Along},
     scaling::{self, Scaling},
     settings_hash,
@@ -182,12 +181,8 @@ pub(super) fn measure(
     out: Option<(&Path, bool)>,
 ) -> Result<Results<Bench>, Failure> {
     let gpu = context.gpu()?;
-    let (mut chosen, learned) = compared(context, &gpu, named, files, MethodSpec::compared)?;
-    // What times are ratios to.
-    let base: MethodSpec = BASE.parse()?;
-    if !chosen.methods.contains(&base) {
-        chosen.methods.push(base);
-    }
+    let (chosen, learned) = compared(context, &gpu, named, files, MethodSpec::compared)?;
+    let chosen = chosen.with_base()?;
     let images = out.map(|(folder, _)| folder.join("images"));
     let plan = Plan {
         methods: &chosen.methods,
