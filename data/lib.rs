@@ -1,7 +1,7 @@
 //! The scenes that ship with peelnet, embedded. None of them reads another file.
 //!
 //! ```
-//! let cups = peelnet_data::find("cups").expect("ships");
+//! let cups = peelnet_shipped_scenes::find("cups").expect("ships");
 //! assert_eq!(cups.path, "data/scenes/cups.toml");
 //! ```
 

@@ -4,7 +4,7 @@
 //! the model files; the exported WGSL can be pasted into any shader.
 //!
 //! ```
-//! let medium = peelnet_models::find("medium").expect("ships");
+//! let medium = peelnet_shipped_networks::find("medium").expect("ships");
 //! assert!(medium.wgsl.contains("fn peelnet_weight"));
 //! ```
 

@@ -1,10 +1,10 @@
 //! The text of every shader of peelnet, embedded.
 //!
 //! Each file is a WESL module: it imports others by path and switches parts with `@if(feature)`. The crate
-//! `peelnet_shaders` links them to plain WGSL.
+//! `peelnet_render::shaders` links them to plain WGSL.
 //!
 //! ```
-//! let (path, text) = peelnet_wgsl::SOURCES[0];
+//! let (path, text) = peelnet_shaders::SOURCES[0];
 //! assert!(path.contains("::") && !text.is_empty());
 //! ```
 

@@ -97,7 +97,7 @@ impl PeelnetModel {
 
     fn shipped(name: &str) -> Self {
         // Both are compiled in, and a test reads each of the three.
-        let model = peelnet_models::find(name).expect("a shipped network");
+        let model = peelnet_shipped_networks::find(name).expect("a shipped network");
         Self::new(model.wgsl, model.json).expect("a shipped network is valid")
     }
 
@@ -240,7 +240,7 @@ mod tests {
     /// Why the text of one network with the description of another, changed, is refused.
     fn refusal_of(text: &str, description: &str, change: fn(&mut Value)) -> String {
         let [text, description] =
-            [text, description].map(|name| peelnet_models::find(name).expect("ships"));
+            [text, description].map(|name| peelnet_shipped_networks::find(name).expect("ships"));
         let mut json = serde_json::from_str(description.json).expect("is valid");
         change(&mut json);
         let error = PeelnetModel::new(text.wgsl, &json.to_string()).expect_err("is refused");

@@ -53,7 +53,7 @@ fn networks_of_another_version_or_recipe() {
         ),
         ("thesis", 1, &["\"thesis\""]),
     ] {
-        let shipped = peelnet_models::find(name).expect("ships");
+        let shipped = peelnet_shipped_networks::find(name).expect("ships");
         let version = format!("\"format_version\": {version}");
         let json = shipped.json.replace("\"format_version\": 1", &version);
         let model = PeelnetModel::new(shipped.wgsl, &json);

@@ -28,7 +28,7 @@ pub fn raised(error: impl Into<Failure>) -> PyErr {
         crate::gpu::forget();
     }
     // On one line, without what could move a terminal's cursor.
-    let text = peelnet_files::printable_lines(&failure.text).into_owned();
+    let text = peelnet_core::files::printable_lines(&failure.text).into_owned();
     if failure.is_wrong_value {
         PyValueError::new_err(text)
     } else {
@@ -38,7 +38,7 @@ pub fn raised(error: impl Into<Failure>) -> PyErr {
 
 /// A warning, as the command line prints it to stderr; an error where Python was asked to turn warnings into errors.
 pub fn warn(py: Python<'_>, text: &str) -> PyResult<()> {
-    let text = peelnet_files::printable_lines(text);
+    let text = peelnet_core::files::printable_lines(text);
     let text = CString::new(text.replace('\0', " "))?;
     let category = py.get_type::<pyo3::exceptions::PyUserWarning>();
     PyErr::warn(py, &category, &text, 1)

@@ -17,7 +17,7 @@ use peelnet::{
     named,
 };
 use peelnet_core::mlp::{Layer, Mlp};
-use peelnet_files::Outputs;
+use peelnet_core::files::Outputs;
 use pyo3::{
     prelude::*,
     types::{PyBytes, PyDict, PyType},

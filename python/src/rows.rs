@@ -20,7 +20,7 @@ use peelnet::{
     dataset::{self, Column, ColumnKind, FragmentBatch},
     extract::{self, ExtractOptions, ExtractReport, PeelError, Progress, items},
 };
-use peelnet_files::{counted, thousands};
+use peelnet_core::files::{counted, thousands};
 use pyo3::{
     prelude::*,
     types::{PyCapsule, PyDict},
@@ -235,7 +235,7 @@ impl Dataset {
 
     fn __repr__(&self) -> String {
         let rows = thousands(self.dataset.rows());
-        format!("Dataset({}: {rows} rows)", peelnet_files::shown(&self.path))
+        format!("Dataset({}: {rows} rows)", peelnet_core::files::shown(&self.path))
     }
 }
 

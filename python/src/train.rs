@@ -11,7 +11,7 @@ use peelnet::{
     named,
     train::{Config, DEFAULT_BUFFER_ROWS, EpochReport, RunOptions},
 };
-use peelnet_files::Outputs;
+use peelnet_core::files::Outputs;
 use pyo3::prelude::*;
 use std::{num::NonZeroUsize, path::PathBuf};
 
@@ -173,9 +173,8 @@ pub fn train<'py>(
         |stop, reporter: &Reporter<EpochReport>| {
             let mut options = RunOptions::new(place.file(), stop);
             options.resume = resume;
-            options.loss_curve = loss_curve;
             options.threads = threads;
-            fit(&config, &datasets, &options, &mut |step| {
+            fit(&config, &datasets, &options, &loss_curve, &mut |step| {
                 if let Step::Epoch(epoch) = step {
                     reporter.ask(epoch.clone());
                 }

@@ -5,8 +5,8 @@ pub mod readers;
 
 use glam::{Vec2, Vec3};
 use peelnet_core::{fragment::Fragment, random::Random};
-use peelnet_gpu::{AdapterRequest, Gpu};
 use peelnet_model::{Model, Recipe};
+use peelnet_render::gpu::{AdapterRequest, Gpu};
 use peelnet_render::{
     Frame, Image, LearnedWeight, METHODS, MethodOptions, MethodSpec, Prepared, Renderer,
 };

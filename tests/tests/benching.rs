@@ -1,14 +1,14 @@
 //! The comparison of methods as a library: what is drawn again after an interruption, and how memory grows.
 
-use peelnet_core::{
-    fragment::{Fragment, worked_example},
-    methods::{mlab, over},
-};
-use peelnet_eval::{
+use peelnet_bench::{
     Partial, Row,
     bench::{Progress, bench_watched},
     compare::Plan,
     scaling::{self, Series},
+};
+use peelnet_core::{
+    fragment::{Fragment, worked_example},
+    methods::{mlab, over},
 };
 use peelnet_render::MethodSpec;
 use peelnet_scene::Scene;

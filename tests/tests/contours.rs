@@ -1,13 +1,13 @@
 //! Which neighbours show the same surfaces, and contour pairs, of scenes whose regions are known.
 
 use glam::Vec3;
-use peelnet_eval::{
+use peelnet_bench::{
     bench,
     compare::{EXACT, Plan},
     contours::Pairs,
 };
-use peelnet_gpu::Gpu;
 use peelnet_render::Renderer;
+use peelnet_render::gpu::Gpu;
 use peelnet_scene::{Material, Object};
 use peelnet_tests::{even, gpu, object, quad, scene, specs};
 use std::sync::Arc;

@@ -171,7 +171,7 @@ fn what_is_not_called_for_is_not_there() {
             let texts = variants.map(|v| {
                 let shaders = ["methods::blended::gather", "scene::opaque"];
                 let shader = shaders[usize::from(v.cutout)];
-                peelnet_shaders::link(shader, &v.features(), &[]).unwrap()
+                peelnet_render::shaders::link(shader, &v.features(), &[]).unwrap()
             });
             texts.collect()
         };

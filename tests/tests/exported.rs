@@ -11,8 +11,8 @@ use naga::{
 };
 use peelnet_core::random::Random;
 use peelnet_export::{Blend, Description, Language, Options, SelfTest, Target};
-use peelnet_gpu::Gpu;
 use peelnet_model::{Model, Recipe};
+use peelnet_render::gpu::Gpu;
 use peelnet_tests::{assert_near, gpu, shipped};
 use std::{fs, path::Path};
 

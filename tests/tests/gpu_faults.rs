@@ -1,6 +1,6 @@
 use peelnet_core::fragment::Fragment;
-use peelnet_gpu::{Gpu, GpuError};
 use peelnet_peel::{Peel, harvest::Harvester, rows::RawTile};
+use peelnet_render::gpu::{Gpu, GpuError};
 use peelnet_render::{MethodOptions, MethodSpec, PixelSample, RenderError, Renderer};
 use peelnet_tests::{frame, gpu, prepare, walls};
 

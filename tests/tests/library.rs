@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::{Mat4, Vec3};
 use peelnet_core::fragment::{Fragment, worked_example};
-use peelnet_gpu::{Gpu, GpuError, wgpu};
+use peelnet_render::gpu::{Gpu, GpuError, wgpu};
 use peelnet_render::{
     FrameStatus, Image, MethodOptions, MethodSpec, Prepared, RenderError, Renderer, Target,
 };

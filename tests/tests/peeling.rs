@@ -1,10 +1,10 @@
 //! The three ways to peel against one another and against the 64-bit scan-line judge.
 
 use glam::Vec3;
+use peelnet_bench::stress::judge::clip_triangles;
 use peelnet_core::{hash, random::Random, scanline, tolerance::UNIT_ROUNDOFF};
-use peelnet_eval::stress::judge::clip_triangles;
-use peelnet_gpu::Gpu;
 use peelnet_peel::{Peel, harvest::Harvester, rows::RawTile};
+use peelnet_render::gpu::Gpu;
 use peelnet_render::{PixelSample, Renderer};
 use peelnet_scene::{Material, Scene};
 use peelnet_tests::{gpu, object, prepare, rectangle, scene, soup};
@@ -99,7 +99,7 @@ fn deep_pixels(lists: &[Vec<f32>]) -> (Scene, [u32; 2]) {
 /// CPU's sort gives, bit for bit, and no fragment is lost, found twice, or given another's colour.
 #[test]
 fn rows_of_deep_pixels_are_those_of_a_sort_on_the_cpu() {
-    use peelnet_raster::long_runs::{PIECE, SHORT};
+    use peelnet_render::geometry::long_runs::{PIECE, SHORT};
     let gpu = gpu();
     let mut random = Random::new(33, &[]);
     // Once and twice the window of a thread lie among them.
@@ -193,10 +193,10 @@ fn broken_sorts_and_lost_fragments_are_errors() {
         let mut lists = vec![random_depths(40, 1)];
         lists.extend(is_stored.then(|| random_depths(3000, 2)));
         let (scene, size) = deep_pixels(&lists);
-        let text = peelnet_shaders::source(module).unwrap();
+        let text = peelnet_render::shaders::source(module).unwrap();
         assert!(text.contains(from), "{module}: {from}");
         let altered = text.replacen(from, to, 1);
-        peelnet_shaders::with_altered(module, &altered, || {
+        peelnet_render::shaders::with_altered(module, &altered, || {
             if is_stored {
                 let harvester = Harvester::new(&gpu, &scene, size, Peel::SBuffer, false, None);
                 let (view, all) = (&scene.views[0], PixelSample::ALL);

@@ -5,11 +5,11 @@
 //! every method runs in `cargo xtask test`, every point of every method's curve in `cargo xtask test --all`.
 
 use glam::Vec3;
+use peelnet_bench::stress::{CASES, Outcome, Subject, stress};
 use peelnet_core::{
     fragment::{Fragment, worked_example},
     random::Random,
 };
-use peelnet_eval::stress::{CASES, Outcome, Subject, stress};
 use peelnet_render::{
     METHODS, MethodOptions, MethodSpec, Renderer,
     methods::{Pixel, Precision},

@@ -1,8 +1,8 @@
 //! The bench's page in a real browser: headless Chromium, which `cargo xtask test --all` installs where it is missing.
 
+use peelnet_bench::report::Results;
+use peelnet_bench::{Machine, bench, bench::Bench, compare::Plan};
 use peelnet_core::fragment::worked_example;
-use peelnet_eval::{Machine, bench, bench::Bench, compare::Plan};
-use peelnet_report::Results;
 use peelnet_tests::{gpu, specs, walls};
 use std::{path::Path, process::Command};
 

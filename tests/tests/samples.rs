@@ -1,7 +1,7 @@
 //! Four samples a pixel: each is composited by itself, and the pixel is their mean in linear light.
 
 use peelnet_core::fragment::Fragment;
-use peelnet_gpu::{Gpu, wgpu};
+use peelnet_render::gpu::{Gpu, wgpu};
 use peelnet_render::{
     Image, MethodOptions, MethodSpec, Renderer, Target,
     methods::{Pixel, Precision},

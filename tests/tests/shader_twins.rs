@@ -1,7 +1,7 @@
 //! Functions that exist once in Rust and once in WGSL: evaluated on the GPU and compared.
 
 use peelnet_core::{guards, weights::Weight};
-use peelnet_gpu::Gpu;
+use peelnet_render::gpu::Gpu;
 use peelnet_tests::{HALF, gpu};
 
 /// Runs `body` (WGSL statements that read `x = inputs[i]` and set `y`) for every input, with features of the shaders.
@@ -25,7 +25,7 @@ fn evaluate(
             outputs[id.x] = y;
         }}"
     );
-    let wgsl = peelnet_shaders::link("driver", features, &[("driver", &root)]).unwrap();
+    let wgsl = peelnet_render::shaders::link("driver", features, &[("driver", &root)]).unwrap();
     let count = inputs.len();
     gpu.run(&wgsl, inputs, count, count as u32).unwrap()
 }

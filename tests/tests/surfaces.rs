@@ -8,7 +8,7 @@ use peelnet_core::{
     shading::{self, Point},
     srgb,
 };
-use peelnet_gpu::Gpu;
+use peelnet_render::gpu::Gpu;
 use peelnet_render::{
     LayerFormula, LayerView, MethodOptions, MethodSpec, Renderer, methods::Precision,
 };
@@ -76,7 +76,7 @@ fn compare_with_the_twin(gpu: &Gpu, mut material: Material, lights: &[Light], ma
     let mut scene = scene("lit", [0.0; 3], vec![object]);
     scene.lights = lights.to_vec();
     let image = draw(gpu, &scene, "abuffer", size);
-    let lights = lights.iter().map(peelnet_eval::stress::judge::light);
+    let lights = lights.iter().map(peelnet_bench::stress::judge::light);
     let lights: Vec<shading::Light> = lights.collect();
     for (i, pixel) in image.pixels.iter().enumerate() {
         let (x, y) = (i as u32 % size[0], i as u32 / size[0]);

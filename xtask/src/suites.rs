@@ -59,8 +59,8 @@ fn bevy() -> Outcome {
 
 /// Compiles what a page in a browser needs, without linking it.
 fn wasm() -> Outcome {
-    let crates = "-p peelnet_core -p peelnet_scene -p peelnet_shaders -p peelnet_gpu -p peelnet_model \
-                  -p peelnet_export -p peelnet_render -p peelnet_peel -p peelnet_eval -p peelnet_view";
+    let crates = "-p peelnet_core -p peelnet_scene -p peelnet_model -p peelnet_render -p peelnet_export \
+                  -p peelnet_peel -p peelnet_bench -p peelnet_view";
     let target = web::TARGET;
     run(&format!("cargo check --target {target} {crates}"))
         .map_err(|e| format!("{e}; where the target is missing: rustup target add {target}"))

@@ -5,7 +5,7 @@
 use ndarray::{Array1, Array2, ArrayView1, Axis, concatenate, stack};
 use peelnet::{
     AdapterRequest, Gpu,
-    extract::{ExtractOptions, batches},
+    peel::{ExtractOptions, batches},
     scene::suite,
 };
 use std::error::Error;

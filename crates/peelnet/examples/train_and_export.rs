@@ -6,7 +6,7 @@ use peelnet::{
     AdapterRequest, Gpu, Recipe,
     dataset::Dataset,
     export,
-    extract::{ExtractOptions, extract},
+    peel::{ExtractOptions, extract},
     scene::suite,
     train::{Config, RunOptions, TrainingData, train},
 };
@@ -33,8 +33,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let data = TrainingData::from_datasets(&config, &[Dataset::open(&options.out)?])?;
     let run = RunOptions::new(folder.join("model.safetensors"), &stop);
-    let outcome = train(&config, &data, &run, |epoch| {
-        println!("epoch {}: loss {:.4}", epoch.epoch, epoch.train_loss);
+    let outcome = train(&config, &data, &run, |epochs| {
+        if let Some(last) = epochs.last() {
+            println!("epoch {}: loss {:.4}", last.epoch, last.train_loss);
+        }
     })?;
 
     let wgsl = folder.join("model.wgsl");

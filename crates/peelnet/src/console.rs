@@ -2,7 +2,7 @@
 //! reaches a terminal unescaped.
 
 use peelnet::Failure;
-use peelnet_files::{printable_json, printable_lines};
+use peelnet_core::files::{printable_json, printable_lines};
 use std::io::{self, IsTerminal as _, Write as _};
 use std::sync::atomic::{AtomicBool, Ordering};
 

@@ -1,10 +1,10 @@
 //! Why something failed, for people: one line, whether a value of theirs was wrong, and which flag helps.
 
-use peelnet_eval::EvalError;
-use peelnet_files::{Refused, error_line};
-use peelnet_gpu::GpuError;
+use peelnet_bench::EvalError;
+use peelnet_core::files::{Refused, error_line};
 use peelnet_peel::PeelError;
 use peelnet_render::RenderError;
+use peelnet_render::gpu::GpuError;
 use std::{error::Error, fmt};
 
 /// An error of any of the libraries, or of what is built on them.
@@ -139,7 +139,6 @@ fn training_advice(error: &peelnet_train::TrainError) -> (bool, Option<String>) 
     use peelnet_train::TrainError;
     match error {
         TrainError::Checkpoint { .. } => (false, Some(RESUME.to_owned())),
-        TrainError::CurveFormat(_) => (true, None),
         TrainError::Config { setting, .. } => {
             let flag = match *setting {
                 "learning_rate" => "lr".to_owned(),

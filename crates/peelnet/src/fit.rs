@@ -1,12 +1,16 @@
 //! Training as the command line and Python do it: datasets into a model at a path or an address, with the errors on held-out scenes.
 
-use crate::{Failure, check_model_place, save_model};
+use crate::{
+    Failure, check_model_place,
+    loss_curve::{CurveFormat, write_curve},
+    save_model,
+};
+use peelnet_core::files::{Outputs, STDOUT, Unfinished, is_remote, shown};
 use peelnet_dataset::Dataset;
-use peelnet_files::{Outputs, STDOUT, Unfinished, is_remote, shown};
 use peelnet_model::Model;
 use peelnet_train::{
-    CHECKPOINT_FILES, Config, CurveFormat, End, EpochReport, Outcome, OutputLock, RunOptions,
-    TrainingData, checkpoint_folder, held_out_errors, train,
+    CHECKPOINT_FILES, Config, End, EpochReport, Outcome, OutputLock, RunOptions, TrainingData,
+    checkpoint_folder, held_out_errors, train,
 };
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
@@ -22,7 +26,7 @@ pub enum Step<'a> {
     Epoch(&'a EpochReport),
 }
 
-/// Trains on datasets; the model file has the errors on held-out scenes in it where the datasets hold such.
+/// Trains on datasets and writes the loss curves, also of a run that diverges; the model file has the errors on held-out scenes in it where the datasets hold such.
 ///
 /// # Errors
 /// As [`train`], and a dataset that cannot be read.
@@ -30,6 +34,7 @@ pub fn fit(
     config: &Config,
     datasets: &[Dataset],
     options: &RunOptions<'_>,
+    loss_curves: &[PathBuf],
     on: &mut dyn FnMut(Step<'_>),
 ) -> Result<Outcome, Failure> {
     // Until the model has all of its metadata; before the rows are read, because that can take minutes.
@@ -47,7 +52,24 @@ pub fn fit(
         TrainingData::from_datasets(config, datasets)?
     };
     on(Step::Ready(&data));
-    let mut outcome = train(config, &data, options, |e| on(Step::Epoch(e)))?;
+    let mut history: Vec<EpochReport> = Vec::new();
+    let trained = train(config, &data, options, |all| {
+        history.extend_from_slice(&all[history.len()..]);
+        all.last().into_iter().for_each(|e| on(Step::Epoch(e)));
+    });
+    let mut outcome = match trained {
+        Ok(outcome) => outcome,
+        Err(error) => {
+            // What went wrong is what the user must hear of.
+            for path in loss_curves {
+                let _ = write_curve(path, &history);
+            }
+            return Err(error.into());
+        }
+    };
+    for path in loss_curves {
+        write_curve(path, &outcome.history)?;
+    }
     if outcome.end != End::Interrupted {
         let held_out = held_out_errors(&outcome.model, datasets)?;
         if !held_out.is_empty() {
@@ -97,7 +119,7 @@ impl ModelPlace {
             )));
         }
         for path in loss_curves {
-            outputs.file(curve_label, path, CurveFormat::of(path)?.kind())?;
+            outputs.file(curve_label, path, CurveFormat::from_ending(path)?.kind())?;
         }
         let scratch = if is_file {
             None

@@ -49,7 +49,7 @@ fn on_signal(signal: i32) {
 
 /// Ends the process while its other threads still work: nothing of theirs is waited for but files that are moving into place.
 fn end() -> ! {
-    peelnet_files::remove_unfinished();
+    peelnet_core::files::remove_unfinished();
     let code = code().unwrap_or(1);
     eprintln!("error: {MESSAGE}");
     #[cfg(unix)]

@@ -5,17 +5,15 @@
 //!
 //! | here | crate | for |
 //! |---|---|---|
-//! | [`Gpu`], [`gpu`] | `peelnet_gpu` | an adapter and a device, opened here or handed in |
 //! | [`Scene`], [`scene`] | `peelnet_scene` | TOML, glTF, OBJ, PLY and STL files, generated meshes, cameras, shipped scenes |
-//! | [`Renderer`], [`render`] | `peelnet_render` | drawing a scene with any method |
-//! | [`extract`] | `peelnet_peel` | every fragment of a scene as a row |
+//! | [`Gpu`], [`Renderer`], [`render`] | `peelnet_render` | an adapter and a device, drawing a scene with any method |
+//! | [`peel`] | `peelnet_peel` | every fragment of a scene as a row |
 //! | [`dataset`] | `peelnet_dataset` | reading those rows: Parquet, CSV and NPY |
 //! | [`Model`], [`model`] | `peelnet_model` | model files; [`Model::shipped`] has the shipped networks |
 //! | [`train`] | `peelnet_train` | networks from datasets (feature `train`) |
 //! | [`export`] | `peelnet_export` | a network as verified WGSL |
-//! | [`mod@bench`] | `peelnet_eval` | errors against the exact image, times, hard cases |
-//! | [`report`] | `peelnet_report` | pages, charts and tables of what was measured |
-//! | [`models`] | `peelnet_models` | model files and WGSL of the shipped networks, embedded |
+//! | [`mod@bench`] | `peelnet_bench` | errors against the exact image, times, stress cases; their pages, charts and tables |
+//! | [`shipped_networks`] | `peelnet_shipped_networks` | model files and WGSL of the shipped networks, embedded |
 //!
 //! # Use
 //!
@@ -33,13 +31,13 @@
 //! Rows of a shipped scene, on whatever adapter there is:
 //!
 //! ```no_run
-//! use peelnet::{AdapterRequest, Gpu, dataset::Dataset, extract, scene::suite};
+//! use peelnet::{AdapterRequest, Gpu, dataset::Dataset, peel, scene::suite};
 //! use std::sync::atomic::AtomicBool;
 //!
 //! let gpu = Gpu::open(&AdapterRequest::Auto)?;
-//! let options = extract::ExtractOptions::new("rows");
+//! let options = peel::ExtractOptions::new("rows");
 //! let stop = AtomicBool::new(false);
-//! extract::extract(&gpu, &[suite::load("cups")?], &options, &stop, &mut |_| ())?;
+//! peel::extract(&gpu, &[suite::load("cups")?], &options, &stop, &mut |_| ())?;
 //! println!("{} rows", Dataset::open("rows")?.rows());
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
@@ -72,10 +70,12 @@
 mod failure;
 #[cfg(feature = "train")]
 pub mod fit;
+#[cfg(feature = "train")]
+pub mod loss_curve;
 mod names;
 mod networks;
 
-use peelnet_files::{counted, printable};
+use peelnet_core::files::{counted, printable};
 
 pub use failure::Failure;
 #[cfg(feature = "train")]
@@ -96,23 +96,22 @@ pub fn view_of(scene: &Scene, view: u32) -> Result<&Camera, Failure> {
 }
 
 #[doc(inline)]
-pub use peelnet_gpu::{AdapterRequest, Gpu};
-#[doc(inline)]
 pub use peelnet_model::{Model, Recipe};
+#[doc(inline)]
+pub use peelnet_render::gpu::{AdapterRequest, Gpu};
 #[doc(inline)]
 pub use peelnet_render::{FrameStatus, LearnedWeight, MethodOptions, MethodSpec, Renderer, Target};
 #[doc(inline)]
 pub use peelnet_scene::{Camera, Scene};
 
+pub use peelnet_bench as bench;
 pub use peelnet_dataset as dataset;
-pub use peelnet_eval as bench;
 pub use peelnet_export as export;
-pub use peelnet_gpu as gpu;
 pub use peelnet_model as model;
-pub use peelnet_models as models;
-pub use peelnet_peel as extract;
+pub use peelnet_peel as peel;
 pub use peelnet_render as render;
-pub use peelnet_report as report;
+pub use peelnet_render::gpu;
 pub use peelnet_scene as scene;
+pub use peelnet_shipped_networks as shipped_networks;
 #[cfg(feature = "train")]
 pub use peelnet_train as train;

@@ -4,7 +4,7 @@
 //! Results go to stdout and messages to stderr, both through [`console`]; progress bars ([`progress`]) show on a
 //! terminal only. Whatever fails becomes a [`peelnet::Failure`]: one line, and the exit code 1, or 2 for wrong
 //! usage. A signal ends every command within two seconds ([`interrupt`]), and files are complete or absent. What a command writes is
-//! checked before it begins ([`peelnet_files::Outputs`]).
+//! checked before it begins ([`peelnet_core::files::Outputs`]).
 
 mod cli;
 mod commands;
@@ -47,5 +47,5 @@ fn main() -> ExitCode {
 /// Whether an argument, such as the name of a file, holds what must not reach a terminal.
 fn is_foreign(argument: &std::ffi::OsStr) -> bool {
     let text = argument.to_string_lossy();
-    peelnet_files::printable_lines(&text) != text
+    peelnet_core::files::printable_lines(&text) != text
 }

@@ -1,11 +1,11 @@
 //! Networks: their files on this machine and in object stores, which one a method draws with, and the text that it draws with.
 
 use crate::Failure;
+use peelnet_bench::front::BASE;
 use peelnet_dataset::{DatasetError, create_object, is_remote, read_object};
-use peelnet_eval::front::BASE;
 use peelnet_export::ExportError;
-use peelnet_gpu::Gpu;
 use peelnet_model::{MAX_BYTES, Model, ModelError, Recipe};
+use peelnet_render::gpu::Gpu;
 use peelnet_render::{LearnedWeight, MethodSpec};
 use std::{
     io::{Error, ErrorKind},

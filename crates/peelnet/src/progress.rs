@@ -2,7 +2,7 @@
 
 use crate::console::Console;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use peelnet_files::one_line;
+use peelnet_core::files::one_line;
 use std::time::Duration;
 
 /// A bar between a name and a text.

@@ -1,6 +1,6 @@
+use peelnet_core::files::{Kind, printable, thousands};
 use peelnet_dataset::Summary;
 use peelnet_dataset::summary::Bin;
-use peelnet_files::{Kind, printable, thousands};
 
 /// Characters of the longest bar of a histogram.
 const BAR: f64 = 40.0;

@@ -93,7 +93,7 @@ fn paths_that_are_no_text_do_not_end_a_command() {
         let parts: Vec<&[u8]> = word.split('@').map(str::as_bytes).collect();
         OsString::from_vec(parts.join(&b"caf\xe9"[..]))
     };
-    let scene = peelnet_data::find("cups").unwrap().text;
+    let scene = peelnet_shipped_scenes::find("cups").unwrap().text;
     std::fs::write(folder.path().join(odd("@.toml")), scene).unwrap();
     folder.write_model(odd("@.safetensors"), peelnet::Recipe::SMALL);
     for line in [

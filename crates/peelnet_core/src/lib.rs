@@ -1,4 +1,4 @@
-//! The mathematics of transparency, without GPU, files or training.
+//! The mathematics of transparency, without GPU, scenes or training; and, below all other crates, the rules of files ([`files`]).
 //!
 //! A pixel is a list of [`fragment::Fragment`]s. [`methods`] turns such a list into a colour: exactly
 //! ([`methods::over`]) or approximately, one file per method, and every GPU method has its twin here. [`weights`]
@@ -15,6 +15,7 @@
 
 pub mod absorbance;
 pub mod features;
+pub mod files;
 pub mod fragment;
 pub mod guards;
 pub mod hash;

@@ -9,7 +9,7 @@ use std::io::{ErrorKind, Write as _};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use peelnet_files::Unfinished;
+use peelnet_core::files::Unfinished;
 
 use crate::error::DatasetError;
 use crate::formats::hash_file;
@@ -228,13 +228,13 @@ fn hidden_names(folder: &Path) -> Result<Vec<String>, DatasetError> {
 /// Whether a hidden folder's writer may be alive.
 fn is_alive(hidden: &Path) -> bool {
     let lock = hidden.join(LOCK);
-    let is_locked = peelnet_files::open(&lock)
+    let is_locked = peelnet_core::files::open(&lock)
         .is_ok_and(|lock| matches!(lock.try_lock(), Err(fs::TryLockError::WouldBlock)));
     if is_locked {
         return true;
     }
     // Locks of network file systems need not reach other machines.
-    let of_this_host = peelnet_files::read_head(&lock, 1 << 10)
+    let of_this_host = peelnet_core::files::read_head(&lock, 1 << 10)
         .is_ok_and(|name| name.is_empty() || name == host().as_bytes());
     !of_this_host && lock.exists() && is_younger(hidden, ABANDONED_AFTER)
 }

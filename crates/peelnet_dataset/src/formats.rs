@@ -10,7 +10,7 @@ use std::io::{self, Read as _};
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
-use peelnet_files::hex;
+use peelnet_core::files::hex;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
@@ -176,7 +176,7 @@ pub fn sha256(bytes: &[u8]) -> String {
 
 /// Length and hexadecimal sha256 of an existing file.
 pub(crate) fn hash_file(path: &Path) -> io::Result<(u64, String)> {
-    let mut file = peelnet_files::open(path)?;
+    let mut file = peelnet_core::files::open(path)?;
     let mut hasher = Sha256::new();
     let mut buffer = vec![0; 1 << 18];
     let mut bytes = 0;

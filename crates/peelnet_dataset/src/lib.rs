@@ -63,7 +63,7 @@ pub use manifest::{
     CameraInfo, ColumnEntry, FileEntry, MAX_WORK_ITEMS, Manifest, Part, SCHEMA_VERSION, SceneEntry,
 };
 pub use parts::{seal, unsealed_parts};
-pub use peelnet_files::is_remote;
+pub use peelnet_core::files::is_remote;
 pub use plan::{Header, Shard, worker_name};
 pub use reader::{Batches, Dataset};
 pub use split::{Split, SplitBy, Subset};

@@ -4,7 +4,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-use peelnet_files::printable;
+use peelnet_core::files::printable;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 

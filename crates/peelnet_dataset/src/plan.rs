@@ -259,7 +259,7 @@ pub(crate) fn host() -> String {
     let variable = |name| std::env::var(name).ok();
     let name = file.or_else(|| variable("HOSTNAME").or_else(|| variable("COMPUTERNAME")));
     let name = name.unwrap_or_default();
-    match peelnet_files::printable(name.trim()) {
+    match peelnet_core::files::printable(name.trim()) {
         name if name.is_empty() => "host".to_owned(),
         name => name.into_owned(),
     }
@@ -268,7 +268,9 @@ pub(crate) fn host() -> String {
 /// The name of this process as a writer: what the variable `PEELNET_WORKER` says, or the machine's name and the process's number.
 pub fn worker_name() -> String {
     match std::env::var("PEELNET_WORKER") {
-        Ok(name) if !name.trim().is_empty() => peelnet_files::printable(name.trim()).into_owned(),
+        Ok(name) if !name.trim().is_empty() => {
+            peelnet_core::files::printable(name.trim()).into_owned()
+        }
         _ => format!("{}:{}", host(), std::process::id()),
     }
 }

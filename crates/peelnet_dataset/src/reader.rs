@@ -74,7 +74,7 @@ impl Dataset {
         if found != entry.sha256 {
             let reason = format!(
                 "was cut or changed: sha256 {found} where the manifest says {}",
-                peelnet_files::printable(&entry.sha256)
+                peelnet_core::files::printable(&entry.sha256)
             );
             return Err(parts::damaged(
                 &*self.store,

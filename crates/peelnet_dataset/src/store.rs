@@ -16,7 +16,7 @@ use std::io::{Error, ErrorKind, Write as _};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use peelnet_files::is_remote;
+use peelnet_core::files::is_remote;
 
 use crate::error::DatasetError;
 use crate::folder::PARTIAL;
@@ -39,12 +39,12 @@ pub(crate) struct Fetched {
     path: PathBuf,
     /// The name in the store, for messages.
     pub shown: PathBuf,
-    _copy: Option<(tempfile::TempPath, peelnet_files::Unfinished)>,
+    _copy: Option<(tempfile::TempPath, peelnet_core::files::Unfinished)>,
 }
 
 impl Fetched {
     pub(crate) fn open(&self) -> Result<File, DatasetError> {
-        peelnet_files::open(&self.path).map_err(DatasetError::io(&self.shown, "open"))
+        peelnet_core::files::open(&self.path).map_err(DatasetError::io(&self.shown, "open"))
     }
 
     /// Length and sha256.
@@ -120,7 +120,7 @@ impl Store for Folder {
 
     fn get(&self, name: &str, most: u64) -> Result<Option<Vec<u8>>, DatasetError> {
         let path = self.path.join(name);
-        match peelnet_files::read(&path, most) {
+        match peelnet_core::files::read(&path, most) {
             Ok(bytes) => Ok(Some(bytes)),
             Err(e) if e.kind() == ErrorKind::NotFound => Ok(None),
             Err(e) => Err(DatasetError::io(&path, "read")(e)),
@@ -129,11 +129,11 @@ impl Store for Folder {
 
     fn put_if_absent(&self, name: &str, bytes: &[u8]) -> Result<bool, DatasetError> {
         let target = self.path.join(name);
-        let folder = peelnet_files::folder_of(&target);
+        let folder = peelnet_core::files::folder_of(&target);
         fs::create_dir_all(folder).map_err(DatasetError::io(folder, "create the folder"))?;
         let scratch = self.scratch.as_deref().unwrap_or(folder);
         let write = || {
-            let (mut file, _unfinished) = peelnet_files::temporary(scratch, PARTIAL)?;
+            let (mut file, _unfinished) = peelnet_core::files::temporary(scratch, PARTIAL)?;
             file.write_all(bytes)?;
             match file.persist_noclobber(&target) {
                 Err(e) if e.error.kind() == ErrorKind::AlreadyExists => Ok(false),
@@ -220,7 +220,7 @@ pub(crate) fn open_store(path: &Path) -> Result<Arc<dyn Store>, DatasetError> {
     Ok(store)
 }
 
-/// The bytes of one object, of at most `most`; `None` where it does not exist. The path is an address, see [`peelnet_files::is_remote`].
+/// The bytes of one object, of at most `most`; `None` where it does not exist. The path is an address, see [`peelnet_core::files::is_remote`].
 ///
 /// # Errors
 /// An address that is none, a server that cannot be asked, or an object that is too large.
@@ -229,7 +229,7 @@ pub fn read_object(path: &Path, most: u64) -> Result<Option<Vec<u8>>, DatasetErr
     store.get(&name, most)
 }
 
-/// Creates one object, whole or not at all; false where the name is taken, by whatever bytes. The path is an address, see [`peelnet_files::is_remote`].
+/// Creates one object, whole or not at all; false where the name is taken, by whatever bytes. The path is an address, see [`peelnet_core::files::is_remote`].
 ///
 /// # Errors
 /// An address that is none, or a server that cannot be asked or refuses.

@@ -177,7 +177,7 @@ impl DatasetWriter {
 
     /// While it lives, a process that ends waits; but not for a network.
     fn moving(&self) -> Option<RwLockReadGuard<'static, ()>> {
-        self.store.folder().map(|_| peelnet_files::moving())
+        self.store.folder().map(|_| peelnet_core::files::moving())
     }
 
     /// Ends this writer. Where every part of the dataset is finished now, the dataset is sealed, and its manifest is returned; otherwise a

@@ -9,8 +9,8 @@ use crate::{
     self_test::SelfTest,
     text::{RANDOM, multiply_adds},
 };
+use peelnet_core::files::{printable, printable_lines};
 use peelnet_core::tolerance::EXPORT_F16;
-use peelnet_files::{printable, printable_lines};
 use peelnet_model::{Model, Output};
 use std::borrow::Cow;
 

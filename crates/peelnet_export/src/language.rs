@@ -203,5 +203,9 @@ impl fmt::Display for Language {
 /// A text, valid, whether it computes in 16 or in 32 bits.
 pub(crate) fn parsed(wgsl: &str) -> Result<(naga::Module, naga::valid::ModuleInfo), ExportError> {
     let halves = naga::valid::Capabilities::SHADER_FLOAT16;
-    Ok(peelnet_shaders::validate("exported network", wgsl, halves)?)
+    Ok(peelnet_render::shaders::validate(
+        "exported network",
+        wgsl,
+        halves,
+    )?)
 }

@@ -27,7 +27,7 @@ pub use text::{text, wgsl};
 #[cfg(not(target_arch = "wasm32"))]
 pub use verify::{Verification, description_path, evaluate, export, verify};
 
-use peelnet_files::Kind;
+use peelnet_core::files::Kind;
 /// By what an exported text is known: its first lines.
 pub const KIND: Kind = Kind {
     name: "an exported shader",
@@ -74,10 +74,10 @@ pub enum ExportError {
     Model(#[from] peelnet_model::Problem),
     /// The text is not valid or does not link: a bug here, or an edited text.
     #[error(transparent)]
-    Shader(#[from] peelnet_shaders::ShaderError),
+    Shader(#[from] peelnet_render::shaders::ShaderError),
     /// The GPU.
     #[error("{0}")]
-    Gpu(#[from] peelnet_gpu::GpuError),
+    Gpu(#[from] peelnet_render::gpu::GpuError),
     /// A text that a language cannot hold, that is not the model's, or that cannot be written.
     #[error("{0}")]
     Refused(String),

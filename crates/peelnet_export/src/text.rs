@@ -58,7 +58,7 @@ pub(crate) fn code(model: &Model, precision: Precision) -> Result<String, Export
         text.push('\n');
     }
     for module in modules(model.meta.recipe) {
-        text.push_str(peelnet_shaders::source(module)?);
+        text.push_str(peelnet_render::shaders::source(module)?);
         text.push('\n');
     }
     text.push_str(&call(model));
@@ -86,7 +86,7 @@ fn modules(recipe: Recipe) -> Vec<&'static str> {
             "learned::anchored",
             "learned::anchored_fragment",
         ],
-        Inputs::Slabs(design, _) => peelnet_shaders::slab_modules(layout(&design).name()),
+        Inputs::Slabs(design, _) => peelnet_render::shaders::slab_modules(layout(&design).name()),
     };
     modules.extend(match recipe.output {
         Output::AnchoredShareSeparateEnds => &["learned::resolve_separate_ends"][..],

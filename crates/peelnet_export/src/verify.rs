@@ -8,13 +8,13 @@ use crate::{
     self_test::SelfTest,
     text::{RANDOM, code, has_halves, text},
 };
+use peelnet_core::files::STDOUT;
 use peelnet_core::{
     random::Random,
     tolerance::{EXPORT_F16, EXPORT_F32},
 };
-use peelnet_files::STDOUT;
-use peelnet_gpu::{Gpu, wgpu};
 use peelnet_model::Model;
+use peelnet_render::gpu::{Gpu, wgpu};
 use serde::Serialize;
 use std::{
     fmt,
@@ -267,7 +267,7 @@ pub fn export(
     let description = json(model)?;
     let beside = description_path(path).map(|path| (path, description));
     for (path, text) in [text].into_iter().chain(beside) {
-        peelnet_files::write_whole(&path, text.as_bytes())
+        peelnet_core::files::write_whole(&path, text.as_bytes())
             .map_err(|e| ExportError::Refused(format!("cannot write {}: {e}", path.display())))?;
     }
     Ok(verification)
@@ -278,8 +278,8 @@ mod tests {
     use super::*;
     use crate::wgsl;
     use peelnet_core::mlp::{Layer, Mlp};
-    use peelnet_gpu::AdapterRequest;
     use peelnet_model::Recipe;
+    use peelnet_render::gpu::AdapterRequest;
 
     /// A random network of a recipe with these hidden layers, for inputs of small ranges.
     fn model(recipe: Recipe, hidden: &[usize], seed: u64) -> Model {

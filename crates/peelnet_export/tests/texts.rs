@@ -7,8 +7,8 @@ use naga::{
     valid::{Capabilities, ValidationFlags, Validator},
 };
 use peelnet_export::{verify, wgsl};
-use peelnet_gpu::{AdapterRequest, Gpu};
 use peelnet_model::{DatasetRef, Model, Recipe};
+use peelnet_render::gpu::{AdapterRequest, Gpu};
 use std::collections::BTreeSet;
 
 /// Ends a line in every way that WGSL knows, and in some that terminals know.

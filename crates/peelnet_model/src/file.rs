@@ -3,8 +3,8 @@
 use std::collections::HashMap;
 use std::fmt;
 
+use peelnet_core::files::Kind;
 use peelnet_core::mlp::{Activation, Layer, Mlp};
-use peelnet_files::Kind;
 use safetensors::tensor::TensorView;
 use safetensors::{Dtype, SafeTensors};
 use serde::{Deserialize, Serialize};

@@ -28,11 +28,12 @@ impl Model {
     /// If the file cannot be read, is not a peelnet model, or [`Model::check`] refuses what it holds.
     pub fn load(path: impl AsRef<Path>) -> Result<Self, ModelError> {
         let path = path.as_ref();
-        let bytes = peelnet_files::read(path, MAX_BYTES).map_err(|source| ModelError::Io {
-            path: path.to_owned(),
-            action: "read the model",
-            source,
-        })?;
+        let bytes =
+            peelnet_core::files::read(path, MAX_BYTES).map_err(|source| ModelError::Io {
+                path: path.to_owned(),
+                action: "read the model",
+                source,
+            })?;
         Self::from_bytes(&bytes, path)
     }
 
@@ -50,7 +51,7 @@ impl Model {
     /// [`ModelError::NotShipped`] for a recipe that was added but not yet trained for a release.
     pub fn shipped(recipe: Recipe) -> Result<Self, ModelError> {
         let name = recipe.name;
-        let shipped = peelnet_models::find(name).ok_or(ModelError::NotShipped(recipe))?;
+        let shipped = peelnet_shipped_networks::find(name).ok_or(ModelError::NotShipped(recipe))?;
         Self::from_bytes(shipped.file, format!("models/{name}/model.safetensors"))
     }
 
@@ -69,7 +70,7 @@ impl Model {
     pub fn save(&self, path: impl AsRef<Path>) -> Result<(), ModelError> {
         let path = path.as_ref();
         let bytes = self.to_bytes().map_err(ModelError::invalid(path))?;
-        peelnet_files::write_whole(path, &bytes).map_err(|source| ModelError::Io {
+        peelnet_core::files::write_whole(path, &bytes).map_err(|source| ModelError::Io {
             path: path.to_owned(),
             action: "write the model",
             source,
@@ -89,7 +90,7 @@ impl Model {
     /// # Errors
     /// If [`Model::check`] refuses the model.
     pub fn hash(&self) -> Result<String, Problem> {
-        Ok(peelnet_files::hex(&Sha256::digest(self.to_bytes()?)))
+        Ok(peelnet_core::files::hex(&Sha256::digest(self.to_bytes()?)))
     }
 
     /// Whether the model can be used: its layers fit one another, the metadata and the recipe, and all numbers are

@@ -6,7 +6,7 @@ use crate::{
     items::shard_items,
 };
 use peelnet_dataset::FragmentBatch;
-use peelnet_gpu::Gpu;
+use peelnet_render::gpu::Gpu;
 use peelnet_scene::Scene;
 use std::{
     sync::mpsc::{Receiver, sync_channel},
@@ -28,7 +28,7 @@ pub struct Batches {
 /// Scenes that lack views or share a name, or a fraction of pixels outside 0 … 1. What goes wrong later is the last item.
 ///
 /// ```no_run
-/// # fn rows(gpu: &peelnet_gpu::Gpu, scene: peelnet_scene::Scene) -> Result<(), peelnet_peel::PeelError> {
+/// # fn rows(gpu: &peelnet_render::gpu::Gpu, scene: peelnet_scene::Scene) -> Result<(), peelnet_peel::PeelError> {
 /// let options = peelnet_peel::ExtractOptions::new("");
 /// for batch in peelnet_peel::batches(gpu, &[scene], &options)? {
 ///     let batch = batch?;

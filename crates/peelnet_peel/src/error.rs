@@ -4,14 +4,14 @@
 pub enum PeelError {
     /// A scene, a frame, or the fragments of one.
     #[error("{0}")]
-    Render(#[from] peelnet_raster::RenderError),
+    Render(#[from] peelnet_render::geometry::RenderError),
     /// Coloured transmission: rows hold one transmittance.
     #[error(
         "a dataset keeps one transmittance a fragment, and this scene's transmission is coloured: make transmission_color grey"
     )]
     Tinted,
     #[error("{0}")]
-    Gpu(#[from] peelnet_gpu::GpuError),
+    Gpu(#[from] peelnet_render::gpu::GpuError),
     #[error("{0}")]
     Dataset(#[from] peelnet_dataset::DatasetError),
     /// A wrong value of what is asked for: `scenes`, `views`, `augment`, `pixels` or `lists`.
@@ -46,8 +46,8 @@ impl PeelError {
     }
 }
 
-impl From<peelnet_shaders::ShaderError> for PeelError {
-    fn from(e: peelnet_shaders::ShaderError) -> Self {
+impl From<peelnet_render::shaders::ShaderError> for PeelError {
+    fn from(e: peelnet_render::shaders::ShaderError) -> Self {
         Self::Render(e.into())
     }
 }

@@ -6,12 +6,12 @@ use crate::{
     items::{camera_info, items},
     rows::{RawTile, RowCounts, make_rows},
 };
+use peelnet_core::files::thousands;
 use peelnet_dataset::{
     DatasetWriter, Format, FragmentBatch, Header, Manifest, Part, SceneEntry, Shard, worker_name,
 };
-use peelnet_files::thousands;
-use peelnet_gpu::Gpu;
-use peelnet_raster::PixelSample;
+use peelnet_render::geometry::PixelSample;
+use peelnet_render::gpu::Gpu;
 use peelnet_scene::{Census, Scene};
 use std::{
     collections::BTreeMap,
@@ -368,7 +368,7 @@ fn peel_part(
 /// Adapters that are expected to give the same bytes: software, or GPUs of one name and back end.
 fn adapter_class(gpu: &Gpu) -> String {
     let info = &gpu.info;
-    if info.device_type == peelnet_gpu::wgpu::DeviceType::Cpu {
+    if info.device_type == peelnet_render::gpu::wgpu::DeviceType::Cpu {
         // Behind the first word there are versions, and the width of the processor's vectors.
         let rasterizer = info.name.split_whitespace().next().unwrap_or("rasterizer");
         format!("software, {rasterizer} ({})", info.backend)

@@ -3,19 +3,19 @@
 use crate::{PeelError, rows::RawTile};
 use bytemuck::{Pod, Zeroable};
 use peelnet_core::absorbance::DepthWarp;
-use peelnet_gpu::{
-    Gpu, Kernel,
-    bind::Bind,
-    record::{Recorder, Timer},
-    wgpu,
-};
-use peelnet_raster::{
+use peelnet_render::geometry::{
     FrameTargets, PixelSample, SamplePoint, SceneBuffers,
     count::{CountPass, FragmentCount},
     dual::DualPeel,
     frame::Output,
     sbuffer::{SBuffer, Tile},
     single::SinglePeel,
+};
+use peelnet_render::gpu::{
+    Gpu, Kernel,
+    bind::Bind,
+    record::{Recorder, Timer},
+    wgpu,
 };
 use peelnet_scene::{Camera, Scene};
 use std::{fmt, str::FromStr};
@@ -266,7 +266,7 @@ impl Harvester {
                 ("peel::collect_single", [second, first].map(bind))
             }
         };
-        let wgsl = peelnet_shaders::link(shader, &[], &[])?;
+        let wgsl = peelnet_render::shaders::link(shader, &[], &[])?;
         let kernel = |textures: Vec<Bind<'_>>| {
             let mut entries = vec![
                 Bind::Uniform(&self.sbuffer.tile),

@@ -3,16 +3,16 @@
 //!
 //! `cargo bench -p peelnet_render --bench plain`; frames in turn, the median of their ratios is what counts.
 
-use peelnet_gpu::{
+use peelnet_render::geometry::{
+    Blend,
+    frame::{Output, attachment, clear_color},
+    fullscreen::FullscreenPass,
+};
+use peelnet_render::gpu::{
     AdapterRequest, Gpu, RenderPipeline,
     bind::{Bind, Bound},
     record::{Recorder, Timer},
     wgpu,
-};
-use peelnet_raster::{
-    Blend,
-    frame::{Output, attachment, clear_color},
-    fullscreen::FullscreenPass,
 };
 use peelnet_render::{MethodOptions, Renderer, milliseconds};
 use peelnet_scene::{Camera, Effect, Scene, suite};

@@ -1,7 +1,7 @@
-//! What must hold of every method in the hard cases of `peelnet_eval::stress`, and the flaws that methods declare.
+//! What must hold of every method in the hard cases of `peelnet_bench::stress`, and the flaws that methods declare.
 
+use crate::gpu::wgpu;
 use crate::methods::{parameter::Precision, spec::MethodSpec};
-use peelnet_gpu::wgpu;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 

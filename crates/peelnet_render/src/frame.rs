@@ -4,23 +4,23 @@
 //! composited by itself: statistics and sums are never averaged over samples, which would mix what belongs to different surfaces at
 //! their edges.
 
-use crate::{
-    RenderError,
-    image::Image,
-    methods::{FrameStats, plan::Target},
+use crate::geometry::{
+    BACKGROUND_PASS, Blend,
+    frame::{attachment, clear_color},
+    fullscreen::FullscreenPass,
 };
-use peelnet_files::counted;
-use peelnet_gpu::{
+use crate::gpu::{
     Gpu,
     bind::Bind,
     record::{PassTime, Recorder, Timer},
     wgpu,
 };
-use peelnet_raster::{
-    BACKGROUND_PASS, Blend,
-    frame::{attachment, clear_color},
-    fullscreen::FullscreenPass,
+use crate::{
+    RenderError,
+    image::Image,
+    methods::{FrameStats, plan::Target},
 };
+use peelnet_core::files::counted;
 use web_time::Instant;
 
 /// A finished frame.

@@ -1,8 +1,8 @@
 //! The drawn frame in memory, and its three file formats.
 
 use crate::RenderError;
+use peelnet_core::files::{Kind, STDOUT};
 use peelnet_core::srgb;
-use peelnet_files::{Kind, STDOUT};
 use std::path::Path;
 
 /// The formats of image files.
@@ -139,7 +139,7 @@ impl Image {
     /// An unknown ending, or a file that cannot be written.
     pub fn save(&self, path: &Path) -> Result<(), RenderError> {
         let bytes = self.encoded(ImageFormat::of(path)?)?;
-        peelnet_files::write_whole(path, &bytes).map_err(|e| failed(path, &e))
+        peelnet_core::files::write_whole(path, &bytes).map_err(|e| failed(path, &e))
     }
 }
 

@@ -13,7 +13,7 @@
 //! linear light in 32-bit floats; [`Image`] encodes for display.
 //!
 //! ```no_run
-//! use peelnet_gpu::{AdapterRequest, Gpu};
+//! use peelnet_render::gpu::{AdapterRequest, Gpu};
 //! use peelnet_render::{MethodOptions, Renderer};
 //! # fn draw(scene: &peelnet_scene::Scene) -> Result<(), Box<dyn std::error::Error>> {
 //! let gpu = Gpu::open(&AdapterRequest::Auto)?;
@@ -26,13 +26,17 @@
 
 pub mod flaw;
 mod frame;
+pub mod geometry;
+pub mod gpu;
 mod image;
 pub mod methods;
 mod pixel;
 mod renderer;
+pub mod shaders;
 mod target;
 mod whole;
 
+pub use crate::geometry::{Order, PixelSample, RenderError, Submission, shader_bytes};
 pub use flaw::{Flaw, Property};
 pub use frame::{Frame, Profile, milliseconds, of_method};
 pub use image::{Image, ImageFormat};
@@ -40,7 +44,6 @@ pub use methods::{
     FrameStats, METHODS, Method, MethodSpec, role,
     views::{LayerFormula, LayerView},
 };
-pub use peelnet_raster::{Order, PixelSample, RenderError, Submission, shader_bytes};
 pub use pixel::PixelFragment;
 pub use renderer::{Prepared, Renderer};
 pub use target::{FrameStatus, LearnedWeight, MethodOptions, Target};

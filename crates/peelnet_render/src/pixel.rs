@@ -1,8 +1,10 @@
 //! The fragments of one pixel, for people who want to see what a method composites.
 
+use crate::geometry::{
+    PixelSample, SamplePoint, count::CountPass, frame::Output, sbuffer::SBuffer,
+};
+use crate::gpu::record::Recorder;
 use crate::{RenderError, renderer::Renderer};
-use peelnet_gpu::record::Recorder;
-use peelnet_raster::{PixelSample, SamplePoint, count::CountPass, frame::Output, sbuffer::SBuffer};
 use peelnet_scene::Camera;
 
 /// A transparent fragment of a pixel.

@@ -1,5 +1,12 @@
 //! [`Renderer`]: a scene on a device, drawn onto a caller's target. Images and times of whole frames are in `whole.rs`.
 
+use crate::geometry::{FrameTargets, PixelSample, SamplePoint, SceneBuffers, frame::Output};
+use crate::gpu::{
+    Gpu,
+    readback::Download,
+    record::{Recorder, Timer},
+    wgpu,
+};
 use crate::{
     RenderError,
     frame::Canvas,
@@ -11,13 +18,6 @@ use crate::{
     },
     target::{FrameStatus, LearnedWeight, MethodOptions, Target},
 };
-use peelnet_gpu::{
-    Gpu,
-    readback::Download,
-    record::{Recorder, Timer},
-    wgpu,
-};
-use peelnet_raster::{FrameTargets, PixelSample, SamplePoint, SceneBuffers, frame::Output};
 use peelnet_scene::{Camera, Scene};
 use std::{
     collections::VecDeque,

@@ -1,5 +1,10 @@
 //! Whole frames of a [`Renderer`]: drawn again where they were too small, read back into images, or timed.
 
+use crate::geometry::{SamplePoint, frame::Output};
+use crate::gpu::{
+    readback::Download,
+    record::{Recorder, Timer},
+};
 use crate::{
     RenderError,
     frame::{Canvas, Frame, Profile},
@@ -8,11 +13,6 @@ use crate::{
     renderer::{Prepared, Renderer},
     target::Target,
 };
-use peelnet_gpu::{
-    readback::Download,
-    record::{Recorder, Timer},
-};
-use peelnet_raster::{SamplePoint, frame::Output};
 use peelnet_scene::Camera;
 use web_time::Instant;
 

@@ -40,7 +40,7 @@ impl Scene {
     /// # Errors
     /// See [`Scene::load`]; a time outside of the timeline, or of a scene without one.
     pub fn load_at(path: impl AsRef<Path>, time: Option<f32>) -> Result<Self, SceneError> {
-        load(path.as_ref(), Files::new(&peelnet_files::read), time)
+        load(path.as_ref(), Files::new(&peelnet_core::files::read), time)
     }
 
     /// Reads the scene file `name` and everything it names through a function that returns a file's bytes, so that an archive, a web page
@@ -106,7 +106,7 @@ fn load(path: &Path, mut files: Files<'_>, time: Option<f32>) -> Result<Scene, S
     assemble(raw, Loader::new(path, files), time)
 }
 
-const MAX_NAME: usize = peelnet_files::MAX_SHOWN;
+const MAX_NAME: usize = peelnet_core::files::MAX_SHOWN;
 
 /// A background as bright as this was hardly meant.
 const MUCH_BRIGHTER: f32 = 16.0;
@@ -169,7 +169,7 @@ fn assemble(raw: RawScene, mut loader: Loader<'_>, time: Option<f32>) -> Result<
         .map_err(|e| loader.value("object", e))?;
     for object in &objects {
         budget::check_reach(object, &views)
-            .map_err(|e| loader.value(&peelnet_files::printable(&object.name), e))?;
+            .map_err(|e| loader.value(&peelnet_core::files::printable(&object.name), e))?;
     }
     if !raw.timeline.is_empty() {
         loader.files.hash_value(&snapshot.time.to_le_bytes());

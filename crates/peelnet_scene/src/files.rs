@@ -8,7 +8,7 @@ use crate::{
     texture::Texture,
     warnings::Warnings,
 };
-use peelnet_files::{check_size, hex};
+use peelnet_core::files::{check_size, hex};
 use sha2::{Digest as _, Sha256};
 use std::{
     collections::HashMap,
@@ -46,7 +46,7 @@ pub(crate) struct Files<'a> {
 }
 
 impl<'a> Files<'a> {
-    /// Files that `read` returns, such as [`peelnet_files::read`].
+    /// Files that `read` returns, such as [`peelnet_core::files::read`].
     pub fn new(read: &'a Read<'a>) -> Self {
         Self {
             read,

@@ -1,7 +1,7 @@
 use crate::{material::Material, texture::Maps, warnings::Warnings};
 use bevy_mikktspace::TangentSpace;
 use glam::{Mat4, Vec2, Vec3};
-use peelnet_files::printable;
+use peelnet_core::files::printable;
 use std::{collections::HashMap, ops::Range};
 
 /// By how much [`Mesh::box_of`] is larger than what it holds on either side, of its longest side: rounding must not miss a flat part.

@@ -5,7 +5,7 @@ use crate::{
     mesh::Mesh,
 };
 use glam::{Mat4, Vec3};
-use peelnet_files::printable;
+use peelnet_core::files::printable;
 use std::{path::PathBuf, sync::Arc};
 
 /// Where light comes from.

@@ -3,7 +3,7 @@
 use crate::{error::SceneError, scene::Scene};
 use std::{io, path::Path};
 
-pub use peelnet_data::{EFFECTS, SCENES, SceneFile, find};
+pub use peelnet_shipped_scenes::{EFFECTS, SCENES, SceneFile, find};
 
 /// Loads a shipped scene by its name.
 ///

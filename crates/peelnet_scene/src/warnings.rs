@@ -57,7 +57,7 @@ impl Warnings {
 /// Text with foreign names in it, fit for one line of a terminal.
 pub(crate) fn one_line(text: &str) -> String {
     let end = text.char_indices().nth(LONGEST).map(|(end, _)| end);
-    let shown = peelnet_files::one_line(&text[..end.unwrap_or(text.len())]);
+    let shown = peelnet_core::files::one_line(&text[..end.unwrap_or(text.len())]);
     shown.into_owned() + if end.is_some() { "…" } else { "" }
 }
 

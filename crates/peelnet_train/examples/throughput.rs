@@ -44,8 +44,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         threads: NonZeroUsize::new(threads.parse()?),
         ..RunOptions::new(folder.path().join("model.safetensors"), &stop)
     };
-    train(&config, &data, &options, |report| {
-        println!("{:.0} {:e}", report.rows_per_s, report.train_loss);
+    train(&config, &data, &options, |epochs| {
+        let last = epochs.last().expect("one has ended");
+        println!("{:.0} {:e}", last.rows_per_s, last.train_loss);
     })?;
     Ok(())
 }

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use burn::tensor::{Device, Tensor, TensorData};
-use peelnet_files::Kind;
+use peelnet_core::files::Kind;
 use safetensors::tensor::{Dtype, SafeTensors, TensorView};
 use serde::{Deserialize, Serialize};
 
@@ -131,7 +131,7 @@ impl Progress {
             path: path.clone(),
             problem: format!("cannot be written: {e}"),
         })?;
-        peelnet_files::write_whole(&path, &bytes).map_err(io(&path))
+        peelnet_core::files::write_whole(&path, &bytes).map_err(io(&path))
     }
 
     /// Loads the state of a run with this configuration and these rows.
@@ -148,7 +148,7 @@ impl Progress {
         // No state has more bytes: four tensors of parameters, the history, and a header.
         let history = 8 * HISTORY as u64 * u64::from(MAX_EPOCHS);
         let most = 16 * parameters as u64 + history + (1 << 20);
-        let read = match peelnet_files::read(&path, most) {
+        let read = match peelnet_core::files::read(&path, most) {
             Err(e) if e.kind() == std::io::ErrorKind::NotFound => {
                 Err("there is no such file, so there is nothing to resume".to_owned())
             }

@@ -16,9 +16,6 @@ pub enum TrainError {
     /// The dataset could not be read.
     #[error("{0}")]
     Dataset(#[from] peelnet_dataset::DatasetError),
-    /// A loss curve has an ending that is neither `.csv` nor `.svg`.
-    #[error("{}: a loss curve ends in .csv or .svg", .0.display())]
-    CurveFormat(PathBuf),
     /// Asked to stop before the first epoch.
     #[error("interrupted while the rows were read: nothing was trained")]
     Stopped,

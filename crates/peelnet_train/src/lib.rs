@@ -4,14 +4,14 @@
 //! datasets ─► loader, examples ─► table, in memory or in a scratch file ─► sampler ─► windows of tensors ─► loss ─┐
 //!                                                                                                                ├─► loop
 //! Config, seed ─► Shape ─► one flat tensor of weights ─► optimizer ──────────────────────────────────────────────┘
-//!                                                                        loop ─► checkpoint, loss curve, model file
+//!                                                                        loop ─► checkpoint, model file
 //! ```
 //!
 //! [`train`] takes the examples of datasets ([`TrainingData`]) and a [`Config`] that holds every hyper-parameter and
 //! the seed. It sets the held-out rows aside, computes each input's mean and deviation over the training rows, and
 //! runs epochs: the examples are permuted (an order drawn from the seed and the epoch's number), batches are slices
 //! of the permuted tensors, and a batch's gradient goes to Adam. What a recipe is trained *on* is its rows or pixels in the table; what it
-//! minimises is in `loss`. The loop, the gradient, checkpoints and curves know nothing about recipes.
+//! minimises is in `loss`. The loop, the gradient, and checkpoints know nothing about recipes.
 //!
 //! # What makes it fast
 //!
@@ -70,7 +70,6 @@
 
 mod checkpoint;
 mod config;
-mod curve;
 mod error;
 mod examples;
 mod loader;
@@ -87,7 +86,6 @@ mod train;
 
 pub use checkpoint::{FILES as CHECKPOINT_FILES, folder as checkpoint_folder};
 pub use config::{Config, DEFAULT_BUFFER_ROWS, DEFAULT_MAX_ROWS, Schedule};
-pub use curve::{CurveFormat, curve_chart, write_curve};
 pub use error::TrainError;
 pub use loader::held_out_errors;
 pub use lock::OutputLock;

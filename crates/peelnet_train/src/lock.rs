@@ -4,7 +4,7 @@ use std::fs::{File, OpenOptions, TryLockError};
 use std::io;
 use std::path::{Path, PathBuf};
 
-use peelnet_files::Unfinished;
+use peelnet_core::files::Unfinished;
 
 use crate::error::{TrainError, beside, io as io_error};
 
@@ -27,9 +27,9 @@ impl OutputLock {
     pub fn take(out: &Path) -> Result<Self, TrainError> {
         let path = beside(out, "lock");
         let failed = io_error(&path);
-        std::fs::create_dir_all(peelnet_files::folder_of(&path)).map_err(&failed)?;
+        std::fs::create_dir_all(peelnet_core::files::folder_of(&path)).map_err(&failed)?;
         // No link, whose target would be created, and no device.
-        peelnet_files::check_file(&path).map_err(&failed)?;
+        peelnet_core::files::check_file(&path).map_err(&failed)?;
         loop {
             let file = OpenOptions::new()
                 .write(true)

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use peelnet_files::thousands;
+use peelnet_core::files::thousands;
 use peelnet_model::Model;
 
 /// One finished epoch.

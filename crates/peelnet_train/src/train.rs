@@ -13,7 +13,6 @@ use rayon::iter::{IntoParallelIterator, ParallelIterator};
 
 use crate::checkpoint::{self, Progress, download};
 use crate::config::Config;
-use crate::curve::{CurveFormat, write_curve};
 use crate::error::{TrainError, io};
 use crate::lock::OutputLock;
 use crate::loss::Window;
@@ -31,8 +30,6 @@ pub struct RunOptions<'a> {
     pub out: PathBuf,
     /// Continue from the checkpoint folder, which must be there.
     pub resume: bool,
-    /// Loss curves to write, by ending .csv or .svg.
-    pub loss_curve: Vec<PathBuf>,
     /// Set it from anywhere to end the run: the last whole epoch is saved.
     pub stop: &'a AtomicBool,
     /// Threads to use, all cores when none. The result does not depend on it.
@@ -42,12 +39,11 @@ pub struct RunOptions<'a> {
 }
 
 impl<'a> RunOptions<'a> {
-    /// A fresh run on all cores without a loss curve.
+    /// A fresh run on all cores.
     pub fn new(out: impl Into<PathBuf>, stop: &'a AtomicBool) -> Self {
         Self {
             out: out.into(),
             resume: false,
-            loss_curve: Vec::new(),
             stop,
             threads: None,
             lock: None,
@@ -61,9 +57,9 @@ const SAVE_EVERY: Duration = Duration::from_secs(5);
 /// With more threads a batch has no more chunks.
 const MAX_THREADS: usize = 16;
 
-/// Trains a network, writes the model file, the checkpoint folder and the loss curves, and returns the model.
+/// Trains a network, writes the model file and the checkpoint folder, and returns the model.
 ///
-/// `on_epoch` is called after every epoch.
+/// `on_epoch` gets every epoch so far, those before a resume included, whenever one has ended.
 ///
 /// # Errors
 /// Settings out of range, columns that do not fit, files that cannot be written or that another run writes, a checkpoint that belongs to
@@ -73,16 +69,11 @@ pub fn train(
     config: &Config,
     data: &TrainingData,
     options: &RunOptions<'_>,
-    on_epoch: impl FnMut(&EpochReport),
+    on_epoch: impl FnMut(&[EpochReport]),
 ) -> Result<Outcome, TrainError> {
     config.check()?;
-    for path in &options.loss_curve {
-        CurveFormat::of(path)?;
-    }
-    for path in options.loss_curve.iter().chain([&options.out]) {
-        if path.is_dir() {
-            return Err(io(path)(std::io::ErrorKind::IsADirectory.into()));
-        }
+    if options.out.is_dir() {
+        return Err(io(&options.out)(std::io::ErrorKind::IsADirectory.into()));
     }
     data.check(config.recipe)?;
     let _lock = match options.lock {
@@ -136,7 +127,7 @@ impl Run<'_> {
     fn go(
         &self,
         feed: &mut Feed<'_>,
-        mut on_epoch: impl FnMut(&EpochReport),
+        mut on_epoch: impl FnMut(&[EpochReport]),
     ) -> Result<Outcome, TrainError> {
         let mut progress = self.start()?;
         let epochs = |progress: &Progress| progress.history.len() as u32;
@@ -164,17 +155,14 @@ impl Run<'_> {
                 progress.best = Some((report.epoch, adam.parameters.clone()));
             }
             progress.adam = adam;
-            on_epoch(&report);
             progress.history.push(report);
+            on_epoch(&progress.history);
             if saved.elapsed() >= SAVE_EVERY {
                 self.save(&progress)?;
                 saved = Instant::now();
             }
         };
         self.save(&progress)?;
-        for path in &self.options.loss_curve {
-            write_curve(path, &progress.history)?;
-        }
         // Choosing the best epoch is what patience asks for; see the crate's documentation.
         let (model_epoch, parameters) = match &progress.best {
             Some((epoch, parameters)) if self.config.patience.is_some() => (*epoch, parameters),
@@ -336,9 +324,6 @@ impl Run<'_> {
     /// only means that nothing is said to be kept.
     fn diverged(&self, what: &str, progress: &Progress) -> TrainError {
         let saved = self.save(progress).is_ok();
-        for path in &self.options.loss_curve {
-            let _ = write_curve(path, &progress.history);
-        }
         let kept = if saved && !progress.history.is_empty() {
             let last = self.folder.join("last.safetensors");
             format!("; the weights before it are in {}", last.display())

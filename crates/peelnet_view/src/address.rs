@@ -19,7 +19,7 @@ pub fn camera_numbers(text: &str) -> Result<Vec<f32>, String> {
 
 /// For a shell, on one line.
 fn quoted(text: &str) -> String {
-    shell_words::quote(&peelnet_files::one_line(text)).into_owned()
+    shell_words::quote(&peelnet_core::files::one_line(text)).into_owned()
 }
 
 impl App {
@@ -101,7 +101,7 @@ pub(crate) fn read(query: &str, start: &mut Start) -> Vec<String> {
         let value = String::from_utf8_lossy(&value);
         if let Err(why) = take(name, &value) {
             let (value, why) = (
-                peelnet_files::printable(&value),
+                peelnet_core::files::printable(&value),
                 crate::task::one_line(&*why),
             );
             wrong.push(format!("the address says {name}={value}: {why}"));

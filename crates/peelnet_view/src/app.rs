@@ -20,7 +20,7 @@ use crate::{
 use eframe::egui_wgpu::{RenderState, WgpuConfiguration, WgpuSetup, WgpuSetupExisting};
 use egui::Context;
 use glam::Vec3;
-use peelnet_gpu::{Gpu, wgpu};
+use peelnet_render::gpu::{Gpu, wgpu};
 use peelnet_render::{FrameStatus, MethodSpec};
 use peelnet_scene::{Camera, Scene};
 use std::{path::PathBuf, time::Duration};

@@ -3,8 +3,8 @@
 use crate::{slot::size_of, task::Fallible};
 use bytemuck::{Pod, Zeroable};
 use eframe::egui_wgpu::RenderState;
-use peelnet_gpu::{Gpu, GpuError, bind::Bind, record::Recorder, wgpu};
-use peelnet_raster::fullscreen::FullscreenPass;
+use peelnet_render::geometry::fullscreen::FullscreenPass;
+use peelnet_render::gpu::{Gpu, GpuError, bind::Bind, record::Recorder, wgpu};
 
 /// Format of what egui shows: encoded values, as egui expects of textures.
 const SHOWN: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;

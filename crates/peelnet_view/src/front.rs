@@ -6,7 +6,7 @@ use crate::{
     stage::{Stage, View},
     task::{Fallible, Job, computed, one_line},
 };
-use peelnet_eval::metrics;
+use peelnet_bench::metrics;
 use peelnet_render::{Image, MethodOptions, MethodSpec, Renderer, milliseconds, of_method};
 use std::{cell::RefCell, rc::Rc, sync::Arc};
 

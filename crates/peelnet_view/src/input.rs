@@ -56,7 +56,7 @@ fn find_file(paths: &[PathBuf]) -> Result<&PathBuf, String> {
     found.ok_or_else(|| {
         let name = paths
             .first()
-            .map_or("nothing".into(), |p| peelnet_files::shown(p));
+            .map_or("nothing".into(), |p| peelnet_core::files::shown(p));
         let scenes = ENDINGS.map(|e| format!(".{e}")).join(", ");
         format!("{name}: not a scene or a network; drop a {scenes} or .{MODEL} file")
     })

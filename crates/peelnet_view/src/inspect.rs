@@ -47,7 +47,7 @@ impl Inspector {
             let layers = fragments.iter().enumerate().map(|(i, fragment)| {
                 let scene = renderer.scene();
                 let object = fragment.object(scene).map(|k| &scene.objects[k].name);
-                let name = object.map(|name| peelnet_files::printable(name).to_string());
+                let name = object.map(|name| peelnet_core::files::printable(name).to_string());
                 let layer = Layer {
                     fragment: *fragment,
                     object: name.unwrap_or_default(),

@@ -5,8 +5,8 @@ use crate::{
     stage::{Stage, View},
     task::{Fallible, Job, computed},
 };
-use peelnet_eval::metrics::{self, Differences};
-use peelnet_gpu::wgpu;
+use peelnet_bench::metrics::{self, Differences};
+use peelnet_render::gpu::wgpu;
 use peelnet_render::{FrameStats, Image, MethodOptions, Renderer, role};
 use std::{rc::Rc, sync::Arc};
 
@@ -78,7 +78,7 @@ async fn measured(
 
 #[cfg(not(target_arch = "wasm32"))]
 fn flip(exact: &Image, image: &Image) -> Option<f64> {
-    use peelnet_eval::perceptual::Displayed;
+    use peelnet_bench::perceptual::Displayed;
     Some(Displayed::new(image).flip(&Displayed::new(exact)))
 }
 

@@ -7,8 +7,8 @@ use crate::{
     stage::Stage,
     task::{Fallible, Job, one_line},
 };
+use peelnet_core::files::shown;
 use peelnet_export::{Language, Options};
-use peelnet_files::shown;
 use peelnet_render::{Image, ImageFormat};
 use std::{
     cell::Cell,
@@ -130,7 +130,7 @@ fn keep(path: &Path, bytes: &[u8]) -> Fallible<String> {
     if path.exists() {
         return Err(format!("{name}: is there already; move it away").into());
     }
-    peelnet_files::write_whole(path, bytes).map_err(|e| format!("{name}: {e}"))?;
+    peelnet_core::files::write_whole(path, bytes).map_err(|e| format!("{name}: {e}"))?;
     Ok(format!("{name} is written"))
 }
 

@@ -4,12 +4,12 @@ use crate::{
     stage::{Stage, View, next_number},
     task::{Fallible, Task, one_line},
 };
-use peelnet_gpu::{
+use peelnet_model::{Model, Recipe};
+use peelnet_render::gpu::{
     GpuError,
     record::{PassTime, Timer},
     wgpu,
 };
-use peelnet_model::{Model, Recipe};
 use peelnet_render::{
     Frame, FrameStats, FrameStatus, LearnedWeight, MethodOptions, MethodSpec, Prepared,
     RenderError, Renderer, Target, milliseconds,

@@ -1,8 +1,8 @@
 //! The scene that is open, on the GPU, and the changes that people make to it.
 
 use crate::{eye::Sphere, task::Fallible};
-use peelnet_files::shown;
-use peelnet_gpu::Gpu;
+use peelnet_core::files::shown;
+use peelnet_render::gpu::Gpu;
 use peelnet_render::{LayerView, RenderError, Renderer};
 use peelnet_scene::{Camera, Effect, Light, Material, Scene, SceneError, file::Edited, suite};
 use std::{

@@ -15,7 +15,7 @@ pub(crate) type Fallible<T> = Result<T, Box<dyn Error>>;
 
 /// An error with its causes, as one line that is safe to show, however long it is.
 pub(crate) fn one_line(error: &dyn Error) -> String {
-    peelnet_files::one_line(&peelnet_files::error_line(error)).into_owned()
+    peelnet_core::files::one_line(&peelnet_core::files::error_line(error)).into_owned()
 }
 
 /// A future that the window polls each frame. Dropping it cancels the work.

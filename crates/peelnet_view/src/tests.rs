@@ -8,8 +8,8 @@ use crate::{
 };
 use eframe::egui_wgpu::{RenderState, RendererOptions};
 use egui_kittest::{Harness, kittest::Queryable as _};
-use peelnet_gpu::{AdapterRequest, Gpu};
 use peelnet_model::{Model, Recipe};
+use peelnet_render::gpu::{AdapterRequest, Gpu};
 use peelnet_render::{FrameStatus, MethodOptions, MethodSpec, Renderer};
 use peelnet_scene::{Scene, suite};
 use std::{

@@ -5,7 +5,7 @@ use crate::{
     memory,
     stage::Source,
 };
-use peelnet_gpu::Gpu;
+use peelnet_render::gpu::Gpu;
 
 /// Opens the window and runs it until it is closed. `size` is that of its content, in pixels. Returns what the frames of a script cost, as a
 /// sentence.

@@ -12,7 +12,7 @@ use wgpu::Color;
 use wgpu::TextureFormat::{Rg8Unorm, Rgba8Unorm, Rgba16Float};
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let network = peelnet::models::find("medium").ok_or("no such network")?;
+    let network = peelnet::shipped_networks::find("medium").ok_or("no such network")?;
     let mut program = Program::new(&[network.wgsl, include_str!("layers.wgsl")].concat())?;
 
     let black = Color::TRANSPARENT;

@@ -4,7 +4,8 @@ use super::{Context, bench_designs, command_line};
 use crate::cli::BenchArgs;
 use crate::progress::Bar;
 use peelnet::{Compared, Failure};
-use peelnet_eval::{
+use peelnet_bench::report::{Measurement, Results};
+use peelnet_bench::{
     EvalError, Machine, Partial,
     bench::{Bench, Progress, bench_watched},
     compare::Plan,
@@ -13,10 +14,9 @@ use peelnet_eval::{
     scaling::{self, Scaling},
     settings_hash,
 };
-use peelnet_files::{Outputs, error_line, shown};
-use peelnet_gpu::Gpu;
+use peelnet_core::files::{Outputs, error_line, shown};
+use peelnet_render::gpu::Gpu;
 use peelnet_render::{LearnedWeight, MethodSpec, role};
-use peelnet_report::{Measurement, Results};
 use peelnet_scene::{Scene, suite};
 use serde_json::json;
 use std::path::{Path, PathBuf};

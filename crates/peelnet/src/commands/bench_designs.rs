@@ -4,13 +4,13 @@ use super::{Context, bench::report, json_path};
 use crate::cli::BenchArgs;
 use crate::progress::Bar;
 use peelnet::Failure;
-use peelnet_dataset::{Dataset, SplitBy, Subset};
-use peelnet_eval::designs::{
+use peelnet_bench::designs::{
     self, ANCHORED, DESIGNS, Designs, Entry, KBUFFER, MOMENTS, Measured, Reference, Row, Score,
 };
-use peelnet_files::{Unfinished, printable, shown};
+use peelnet_bench::report::Results;
+use peelnet_core::files::{Unfinished, printable, shown};
+use peelnet_dataset::{Dataset, SplitBy, Subset};
 use peelnet_model::{Model, Recipe};
-use peelnet_report::Results;
 use peelnet_scene::Scene;
 use peelnet_train::{Config, End, RunOptions, TrainingData, train};
 use std::collections::BTreeSet;

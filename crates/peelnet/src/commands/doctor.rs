@@ -1,8 +1,8 @@
 use super::Context;
 use peelnet::Failure;
-use peelnet_files::error_line;
-use peelnet_gpu::adapter::{AdapterReport, INSTALL_HINT, report};
-use peelnet_gpu::{AdapterRequest, Gpu};
+use peelnet_core::files::error_line;
+use peelnet_render::gpu::adapter::{AdapterReport, INSTALL_HINT, report};
+use peelnet_render::gpu::{AdapterRequest, Gpu};
 use serde_json::json;
 
 pub(super) fn run(context: &Context<'_>) -> Result<(), Failure> {

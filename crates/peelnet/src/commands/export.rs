@@ -1,7 +1,7 @@
 use super::{Context, json_path};
 use crate::cli::ExportArgs;
 use peelnet::{Failure, PRECISIONS};
-use peelnet_files::shown;
+use peelnet_core::files::shown;
 use serde_json::json;
 
 pub(super) fn run(context: &Context<'_>, args: &ExportArgs) -> Result<(), Failure> {

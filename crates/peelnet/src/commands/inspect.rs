@@ -2,9 +2,9 @@ use super::{Context, bench::EFFECTS_METHOD, few, json_path, losses};
 use crate::cli::InspectArgs;
 use crate::summary_text::summary_text;
 use peelnet::Failure;
+use peelnet_bench::effects::{self, Cost, Settings};
+use peelnet_core::files::{counted, one_line, printable, shown, thousands};
 use peelnet_dataset::{Dataset, Summary, is_remote};
-use peelnet_eval::effects::{self, Cost, Settings};
-use peelnet_files::{counted, one_line, printable, shown, thousands};
 use peelnet_model::Model;
 use peelnet_render::{FrameStats, MethodOptions, MethodSpec, Renderer, shader_bytes};
 use peelnet_scene::{Census, Effect, Scene, file::ENDINGS, suite};
@@ -177,7 +177,7 @@ fn count(context: &Context<'_>, scene: &Scene) -> Result<FrameStats, Failure> {
     let gpu = context.gpu()?;
     let camera = peelnet::view_of(scene, 0)?;
     let renderer = Renderer::new(&gpu, scene)?;
-    let exact: MethodSpec = peelnet_eval::compare::EXACT.parse()?;
+    let exact: MethodSpec = peelnet_bench::compare::EXACT.parse()?;
     let mut prepared = renderer.method(&exact, MethodOptions::sized(COUNTED_AT))?;
     Ok(renderer.image(&mut prepared, camera)?.stats)
 }

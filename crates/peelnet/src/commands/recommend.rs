@@ -1,7 +1,7 @@
 use super::{Context, bench};
 use crate::cli::RecommendArgs;
 use peelnet::Failure;
-use peelnet_eval::{
+use peelnet_bench::{
     compare::Plan,
     front::{Point, untimed},
     recommend::{Budget, judged},

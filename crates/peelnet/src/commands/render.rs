@@ -1,7 +1,7 @@
 use super::{Context, json_path};
 use crate::cli::RenderArgs;
 use peelnet::Failure;
-use peelnet_files::{counted, error_line, shown};
+use peelnet_core::files::{counted, error_line, shown};
 use peelnet_render::{
     Frame, ImageFormat, LayerFormula, LayerView, MethodOptions, RenderError, Renderer,
 };

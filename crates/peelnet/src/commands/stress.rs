@@ -2,12 +2,12 @@ use super::{Context, bench::compared, command_line};
 use crate::cli::StressArgs;
 use crate::progress::Bar;
 use peelnet::Failure;
-use peelnet_eval::{
+use peelnet_bench::report::Results;
+use peelnet_bench::{
     EvalError, Machine,
     stress::{CASES, Outcome, Stressed, Subject, stress},
 };
-use peelnet_files::shown;
-use peelnet_report::Results;
+use peelnet_core::files::shown;
 use serde_json::json;
 use std::sync::atomic::Ordering;
 

@@ -3,13 +3,13 @@ use crate::cli::TrainArgs;
 use crate::progress::Bar;
 use peelnet::Failure;
 use peelnet::fit::{self, ModelPlace, Step};
+use peelnet_core::files::{counted, printable, shown, thousands};
 use peelnet_dataset::Dataset;
-use peelnet_files::{counted, printable, shown, thousands};
 use peelnet_train::{
     Config, DataSplit, End, Outcome, RunOptions, TrainingData, UsedRows, checkpoint_folder,
 };
 use serde_json::json;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 pub(super) fn run(context: &Context<'_>, args: &TrainArgs) -> Result<(), Failure> {
     let config = config(args)?;
@@ -26,8 +26,7 @@ pub(super) fn run(context: &Context<'_>, args: &TrainArgs) -> Result<(), Failure
     context.begin(&mut outputs, &[])?;
     let mut options = RunOptions::new(place.file(), context.stop);
     options.resume = args.resume;
-    options.loss_curve = args.loss_curve.clone();
-    let outcome = fit(context, &config, &datasets, &options)?;
+    let outcome = fit(context, &config, &datasets, &options, &args.loss_curve)?;
     place.deliver(&outcome.model)?;
     let meta = &outcome.model.meta;
     let dataset = meta.dataset.as_ref();
@@ -84,24 +83,31 @@ pub(super) fn fit(
     config: &Config,
     datasets: &[Dataset],
     options: &RunOptions<'_>,
+    loss_curves: &[PathBuf],
 ) -> Result<Outcome, Failure> {
     let console = context.console;
     let mut bar = config
         .buffer_rows
         .map(|_| Bar::new(console, "read", datasets.iter().map(Dataset::rows).sum()));
-    let outcome = fit::fit(config, datasets, options, &mut |step| match step {
-        Step::Read(rows, of) => bar.iter().for_each(|bar| bar.set(rows, of, String::new())),
-        Step::Ready(data) => {
-            bar = None;
-            say(context, config, data, &options.out);
-            bar = Some(Bar::new(console, "train", config.epochs.into()));
-        }
-        Step::Epoch(e) => {
-            let text = e.progress();
-            bar.iter()
-                .for_each(|bar| bar.set(e.epoch.into(), e.epochs.into(), text.clone()));
-        }
-    });
+    let outcome = fit::fit(
+        config,
+        datasets,
+        options,
+        loss_curves,
+        &mut |step| match step {
+            Step::Read(rows, of) => bar.iter().for_each(|bar| bar.set(rows, of, String::new())),
+            Step::Ready(data) => {
+                bar = None;
+                say(context, config, data, &options.out);
+                bar = Some(Bar::new(console, "train", config.epochs.into()));
+            }
+            Step::Epoch(e) => {
+                let text = e.progress();
+                bar.iter()
+                    .for_each(|bar| bar.set(e.epoch.into(), e.epochs.into(), text.clone()));
+            }
+        },
+    );
     drop(bar);
     let outcome = outcome?;
     if outcome.end == End::Interrupted {

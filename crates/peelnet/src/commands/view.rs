@@ -13,7 +13,7 @@ pub(super) fn run(_: &Context<'_>, _: &ViewArgs) -> Result<(), Failure> {
 
 #[cfg(feature = "view")]
 pub(super) fn run(context: &Context<'_>, args: &ViewArgs) -> Result<(), Failure> {
-    use peelnet_files::shown;
+    use peelnet_core::files::shown;
     use peelnet_render::ImageFormat;
     use peelnet_view::{Script, Start};
 

@@ -195,7 +195,7 @@ impl PartSource for CsvSource {
                 if parsed.is_none() {
                     let line = self.record.position().map_or(0, csv::Position::line);
                     let text = String::from_utf8_lossy(field);
-                    let text = peelnet_files::printable(&text);
+                    let text = peelnet_core::files::printable(&text);
                     let reason = format!(
                         "line {line}, column {column}: {text:?} is not a number of type {kind}; fix the line or write the dataset again"
                     );

@@ -119,7 +119,7 @@ impl NpySource {
             let reason = format!(
                 "not an NPY file of column {column}: {rows} rows need {needed} bytes with the header {:?}, and it has {length} with {:?}; write the dataset again",
                 text(&expected[10..]),
-                peelnet_files::printable(&text(found.get(10..).unwrap_or_default())),
+                peelnet_core::files::printable(&text(found.get(10..).unwrap_or_default())),
             );
             return Err(DatasetError::invalid(&path, reason));
         }

@@ -18,7 +18,7 @@ use object_store::{
 };
 use tokio::runtime::Runtime;
 
-use peelnet_files::error_line;
+use peelnet_core::files::error_line;
 
 use super::{Fetched, Store};
 use crate::error::DatasetError;
@@ -155,7 +155,7 @@ impl Store for Remote {
         let shown = self.shown(name);
         let get = async || {
             let found = self.store.get(&key).await?;
-            match peelnet_files::check_size(found.meta.size, most) {
+            match peelnet_core::files::check_size(found.meta.size, most) {
                 Ok(()) => found.bytes().await.map(Ok),
                 Err(larger) => Ok(Err(larger)),
             }
@@ -175,7 +175,7 @@ impl Store for Remote {
     fn put_file_if_absent(&self, name: &str, file: &Path) -> Result<bool, DatasetError> {
         let io = |e| DatasetError::io(&self.shown(name), "send")(e);
         let length = fs::metadata(file).map_err(io)?.len();
-        peelnet_files::check_size(length, MAX_OBJECT).map_err(io)?;
+        peelnet_core::files::check_size(length, MAX_OBJECT).map_err(io)?;
         self.put(name, fs::read(file).map_err(io)?)
     }
 
@@ -189,7 +189,7 @@ impl Store for Remote {
             let file = tempfile::Builder::new().prefix("peelnet-").tempfile()?;
             fs::write(file.path(), &bytes)?;
             let copy = file.into_temp_path();
-            let unfinished = peelnet_files::Unfinished::new(&copy);
+            let unfinished = peelnet_core::files::Unfinished::new(&copy);
             Ok(Fetched {
                 path: copy.to_path_buf(),
                 shown: self.shown(name),

@@ -3,15 +3,15 @@
 //! A frame's storage has the room that an earlier frame needed. Fragments beyond it are left out and counted, and the next frame has room.
 
 use super::{compositor::resolve, prelude::*, views::Composite};
-use peelnet_core::methods::over;
-use peelnet_gpu::{bind::Bind, wgpu};
-use peelnet_raster::{
+use crate::geometry::{
     FrameTargets, SceneBuffers,
     count::{CountPass, FragmentCount},
     fullscreen::FullscreenPass,
     long_runs::{self, Fold},
     sbuffer::{SBuffer, Tile},
 };
+use crate::gpu::{bind::Bind, wgpu};
+use peelnet_core::methods::over;
 
 const BUDGET: Parameter = Parameter::whole(
     "budget",

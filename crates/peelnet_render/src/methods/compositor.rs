@@ -1,7 +1,7 @@
 use super::spec::MethodSpec;
+use crate::geometry::{FrameTargets, SamplePoint, SceneBuffers, fullscreen::FullscreenPass};
+use crate::gpu::{Gpu, bind::Bind, record::Recorder, wgpu};
 use crate::{RenderError, target::MethodOptions};
-use peelnet_gpu::{Gpu, bind::Bind, record::Recorder, wgpu};
-use peelnet_raster::{FrameTargets, SamplePoint, SceneBuffers, fullscreen::FullscreenPass};
 use peelnet_scene::Camera;
 use std::fmt;
 

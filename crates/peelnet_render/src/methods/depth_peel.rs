@@ -5,13 +5,13 @@ use super::{
     peeling::{self, PASSES, Peel, Peeling},
     prelude::*,
 };
-use peelnet_core::methods::over;
-use peelnet_gpu::{bind::Bind, wgpu};
-use peelnet_raster::{
+use crate::geometry::{
     frame::clear_color,
     fullscreen::FullscreenPass,
     single::{self, SinglePeel},
 };
+use crate::gpu::{bind::Bind, wgpu};
+use peelnet_core::methods::over;
 
 /// Coincident fragments that are drawn in another order.
 pub(super) const COINCIDENT: Flaw = Flaw::new(

@@ -6,13 +6,13 @@ use super::{
     peeling::{self, PASSES, Peel, Peeling},
     prelude::*,
 };
-use peelnet_core::methods::over;
-use peelnet_gpu::{bind::Bind, wgpu};
-use peelnet_raster::{
+use crate::geometry::{
     dual::{self, DualPeel},
     frame::{attachment, clear_color},
     fullscreen::FullscreenPass,
 };
+use crate::gpu::{bind::Bind, wgpu};
+use peelnet_core::methods::over;
 
 /// Precision of the colours that layers are blended into; peeled depths have 32 bits always.
 const COLORS: Parameter = Parameter::words(

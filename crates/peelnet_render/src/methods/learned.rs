@@ -7,7 +7,7 @@ impl LearnedWeight {
     /// The network that ships for a method; `None` for a method that has none.
     pub fn shipped(spec: &MethodSpec) -> Option<Self> {
         let recipe = Recipe::of_method(spec.name())?;
-        let shipped = peelnet_models::find(recipe.name)?;
+        let shipped = peelnet_shipped_networks::find(recipe.name)?;
         Some(Self {
             recipe,
             wgsl: shipped.wgsl.to_owned(),

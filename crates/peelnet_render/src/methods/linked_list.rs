@@ -10,9 +10,9 @@ use super::{
     prelude::*,
     stored::{self, COLORS},
 };
+use crate::geometry::count::CountPass;
+use crate::gpu::wgpu;
 use peelnet_core::methods::over;
-use peelnet_gpu::wgpu;
-use peelnet_raster::count::CountPass;
 
 const NODES: Parameter = Parameter::whole(
     "nodes",

@@ -4,12 +4,12 @@
 //! premultiplied colour with coverage, which may be interpolated; sums and moments may not.
 
 use super::{compositor::resolve, prelude::*};
-use peelnet_gpu::{bind::Bind, wgpu};
-use peelnet_raster::{
+use crate::geometry::{
     FrameTargets, PixelSample,
     frame::{Output, clear_color},
     fullscreen::FullscreenPass,
 };
+use crate::gpu::{bind::Bind, wgpu};
 
 /// Colour over black, the black itself, and the opaque depth, at the lower resolution.
 const BYTES_PER_SAMPLE: f64 = 16.0 + 16.0 + 4.0;

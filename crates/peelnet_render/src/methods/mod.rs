@@ -47,11 +47,11 @@ mod prelude {
         plan::{ENDS, Plan, SUMS, TRANSMITTANCE, Target},
         spec::MethodSpec,
     };
+    pub(super) use crate::geometry::Blend;
     pub(super) use crate::{
         RenderError,
         flaw::{Flaw, Property, half_statistics, half_sums},
     };
-    pub(super) use peelnet_raster::Blend;
 }
 
 use crate::RenderError;

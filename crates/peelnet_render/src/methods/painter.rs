@@ -2,8 +2,8 @@
 //! surfaces that intersect, or overlap in a cycle.
 
 use super::{plan::Resource, prelude::*};
+use crate::geometry::Order;
 use peelnet_core::{fragment::Fragment, methods::over};
-use peelnet_raster::Order;
 
 const SORT: Parameter = Parameter::words(
     "sort",

@@ -2,8 +2,8 @@
 //! read back with the frame.
 
 use super::prelude::*;
-use peelnet_gpu::wgpu;
-use peelnet_raster::{count::CountPass, fullscreen::FullscreenPass};
+use crate::geometry::{count::CountPass, fullscreen::FullscreenPass};
+use crate::gpu::wgpu;
 use std::fmt;
 
 /// A cap on the number of passes.

@@ -9,13 +9,13 @@ use super::{
     views::Shows,
 };
 use crate::RenderError;
-use peelnet_gpu::{Kernel, bind::Bind, wgpu};
-use peelnet_raster::{
+use crate::geometry::{
     Blend, BoxPass, GeometryPass, GeometryPipelines, Order, Sorted,
     count::{unwritten_attachment, unwritten_texture},
     frame::clear_color,
     fullscreen::FullscreenPass,
 };
+use crate::gpu::{Kernel, bind::Bind, wgpu};
 
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Target {
@@ -355,7 +355,7 @@ impl<'b> Plan<'b> {
         }
         let work = match pass.draws {
             Draws::Threads(threads) => {
-                let wgsl = peelnet_shaders::link(shader, &features, &modules)?;
+                let wgsl = crate::shaders::link(shader, &features, &modules)?;
                 let threads = u32::try_from(threads).unwrap_or(u32::MAX);
                 Work::Threads(Kernel::new(gpu, shader, &wgsl, &entries), threads)
             }

@@ -187,8 +187,8 @@ fn plan(p: &mut Plan<'_>) -> Result<(), RenderError> {
              fn peelnet_network(between: PeelnetBetween) -> f32 {\n    return 0.5;\n}\n",
         );
         let layout = plain_layout(p.b.spec);
-        for module in peelnet_shaders::slab_modules(layout.name()) {
-            p.network.push_str(peelnet_shaders::source(module)?);
+        for module in crate::shaders::slab_modules(layout.name()) {
+            p.network.push_str(crate::shaders::source(module)?);
         }
         layout
     };

@@ -10,7 +10,7 @@ use crate::{
     texture::Maps,
 };
 use glam::{Mat4, Quat, Vec3};
-use peelnet_files::printable;
+use peelnet_core::files::printable;
 use serde::Deserialize;
 use toml::{Table, Value};
 

@@ -5,7 +5,7 @@ use super::{
     raw::{RawObject, RawState},
 };
 use crate::{error::SceneError, material::Material};
-use peelnet_files::printable;
+use peelnet_core::files::printable;
 use std::collections::HashMap;
 
 pub(super) const NO_TIMELINE: &str = "is missing: leave the time out, or add [[timeline]] states";

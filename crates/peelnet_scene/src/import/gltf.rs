@@ -15,7 +15,7 @@ use crate::{
 };
 use gltf::json::extensions::ENABLED_EXTENSIONS;
 use nodes::Reader;
-use peelnet_files::{counted, printable};
+use peelnet_core::files::{counted, printable};
 use serde_json::Value;
 use std::{borrow::Cow, path::Path};
 

@@ -8,7 +8,7 @@ use crate::{
     texture::Texture,
     warnings::Warnings,
 };
-use peelnet_files::printable;
+use peelnet_core::files::printable;
 use std::{
     collections::{HashMap, HashSet},
     fmt::Write,

@@ -9,7 +9,7 @@ use crate::{
     warnings::Warnings,
 };
 use glam::{DVec3, Vec2, Vec3};
-use peelnet_files::printable;
+use peelnet_core::files::printable;
 use std::{borrow::Cow, fmt::Write, path::Path};
 
 /// Reads an OBJ file and the MTL files and textures that it names.

@@ -11,7 +11,7 @@ use super::{
 };
 use crate::{budget::Budget, error::SceneError, files::Files, mesh::Mesh};
 use glam::{DVec3, Vec2, Vec3};
-use peelnet_files::{counted, printable};
+use peelnet_core::files::{counted, printable};
 use ply_rs_bw::{
     parser::{ParseError, Parser, Reader},
     ply::{ElementDef, Encoding, Header, PropertyAccess, PropertyType, ScalarType},

@@ -13,7 +13,7 @@ use crate::{
     mesh::{Mesh, area_of, key_of},
 };
 use glam::Vec3;
-use peelnet_files::{counted, printable};
+use peelnet_core::files::{counted, printable};
 use rayon::prelude::*;
 use std::{collections::HashMap, path::Path};
 

@@ -9,7 +9,7 @@ use crate::{
     warnings::Warnings,
 };
 use glam::{Vec2, Vec3};
-use peelnet_files::counted;
+use peelnet_core::files::counted;
 use std::{collections::HashMap, path::Path};
 
 /// Positions beyond this overflow when they are squared.

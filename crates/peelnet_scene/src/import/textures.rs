@@ -7,7 +7,7 @@ use crate::{
     material::{Lighting, Material},
     texture::{Maps, Texture, Wrap},
 };
-use peelnet_files::printable;
+use peelnet_core::files::printable;
 use std::{
     collections::BTreeMap,
     path::{Path, PathBuf},

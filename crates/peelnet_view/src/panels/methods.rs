@@ -202,7 +202,7 @@ fn chosen(
 
 fn network(app: &mut App, ui: &mut Ui) {
     let own = app.first.own_network();
-    if let Some(name) = own.map(|n| peelnet_files::shown(&n.path)) {
+    if let Some(name) = own.map(|n| peelnet_core::files::shown(&n.path)) {
         ui.horizontal_wrapped(|ui| {
             let about = "Read again whenever the file changes, as while peelnet train writes it";
             ui.label(format!("Network: {name}")).on_hover_text(about);

@@ -135,7 +135,7 @@ fn error(ui: &mut Ui, text: &str) {
 
 /// Text of a file, safe to show.
 fn printable(text: &str) -> String {
-    peelnet_files::printable(text).into_owned()
+    peelnet_core::files::printable(text).into_owned()
 }
 
 /// A number with as many digits as are worth reading.

@@ -32,7 +32,7 @@ fn open(app: &mut App, ui: &mut Ui) {
     if !app.recent.is_empty() {
         ui.menu_button("Recent", |ui| {
             for path in &app.recent {
-                if ui.button(peelnet_files::shown(path)).clicked() {
+                if ui.button(peelnet_core::files::shown(path)).clicked() {
                     chosen = Some(path.clone());
                 }
             }

@@ -2,7 +2,7 @@
 
 use crate::{stage::Files, task::Fallible};
 use egui::{DroppedFileHandle, Ui};
-use peelnet_files::shown;
+use peelnet_core::files::shown;
 use std::path::Path;
 use wasm_bindgen::{JsCast as _, JsValue};
 

@@ -77,7 +77,7 @@ impl Page {
     }
 
     pub fn warn(&self, text: &str) {
-        let text = peelnet_files::one_line(text).into_owned();
+        let text = peelnet_core::files::one_line(text).into_owned();
         self.with(|app| app.messages.warn(text));
     }
 

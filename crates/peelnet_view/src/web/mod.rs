@@ -17,8 +17,8 @@ use crate::{
 use egui::{FontData, FontDefinitions, FontFamily};
 pub(crate) use files::{choose_files, download};
 pub use handle::Page;
-use peelnet_gpu::{AdapterRequest, Gpu, GpuError};
 use peelnet_render::MethodSpec;
+use peelnet_render::gpu::{AdapterRequest, Gpu, GpuError};
 use peelnet_scene::Camera;
 use shelf::Shelf;
 use std::path::PathBuf;
@@ -122,7 +122,7 @@ impl App {
             app.messages.error(text);
         }
         if is_missing {
-            let name = peelnet_files::shown(&wanted);
+            let name = peelnet_core::files::shown(&wanted);
             app.messages.warn(format!(
                 "{name}: no scene of this name ships with the viewer, and a page keeps only the one that was dropped last: drop it again"
             ));

@@ -5,7 +5,7 @@ use base64::{
     alphabet::STANDARD,
     engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig},
 };
-use peelnet_files::printable;
+use peelnet_core::files::printable;
 use std::path::Path;
 
 /// Base64 with or without padding, as exporters write it.
@@ -73,6 +73,6 @@ fn read_data(data: &str, limit: u64) -> Result<Vec<u8>, String> {
     };
     // Four letters are three bytes.
     let bytes = text.len() as u64 / 4 * 3;
-    peelnet_files::check_size(bytes, limit).map_err(|e| e.to_string())?;
+    peelnet_core::files::check_size(bytes, limit).map_err(|e| e.to_string())?;
     BASE64.decode(text).map_err(|e| e.to_string())
 }

@@ -6,7 +6,7 @@ use gltf::{
     accessor::{DataType, Dimensions},
     json::extensions::ENABLED_EXTENSIONS,
 };
-use peelnet_files::printable;
+use peelnet_core::files::printable;
 use serde_json::Value;
 
 /// Checks the extensions that the file needs, and numbers that the crate does not check.

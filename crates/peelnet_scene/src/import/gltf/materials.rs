@@ -12,7 +12,7 @@ use gltf::{
     material::{AlphaMode, PbrSpecularGlossiness},
     texture::{MagFilter, WrappingMode},
 };
-use peelnet_files::printable;
+use peelnet_core::files::printable;
 use std::sync::Arc;
 
 /// The UV set of a texture, and the transform of its UVs.

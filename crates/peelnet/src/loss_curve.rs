@@ -1,0 +1,138 @@
+//! The loss curve as a table and as a picture.
+
+use crate::Failure;
+use peelnet_bench::chart::{Line, Scale, Svg, line_chart};
+use peelnet_core::files::{Kind, shown, write_whole};
+use peelnet_train::EpochReport;
+use std::path::Path;
+
+const HEADINGS: [&str; 5] = [
+    "epoch",
+    "train_loss",
+    "held_out_loss",
+    "seconds",
+    "rows_per_s",
+];
+
+/// The forms of a loss curve, chosen by the file's ending.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CurveFormat {
+    /// Columns epoch, train_loss, held_out_loss, seconds, rows_per_s.
+    Csv,
+    /// Both losses over the epochs, logarithmic.
+    Svg,
+}
+
+impl CurveFormat {
+    /// # Errors
+    /// Any other ending.
+    pub fn from_ending(path: &Path) -> Result<Self, Failure> {
+        match path.extension().and_then(|e| e.to_str()) {
+            Some(e) if e.eq_ignore_ascii_case("csv") => Ok(Self::Csv),
+            Some(e) if e.eq_ignore_ascii_case("svg") => Ok(Self::Svg),
+            _ => Err(Failure::wrong(format!(
+                "{}: a loss curve ends in .csv or .svg",
+                shown(path)
+            ))),
+        }
+    }
+
+    /// By what a loss curve of this form is known.
+    pub const fn kind(self) -> Kind {
+        match self {
+            Self::Csv => Kind {
+                name: "a loss curve (CSV)",
+                is: |head| head.starts_with(HEADINGS.join(",").as_bytes()),
+            },
+            Self::Svg => Kind {
+                name: "a loss curve (SVG)",
+                is: Svg::is_ours,
+            },
+        }
+    }
+}
+
+/// Writes the history in the form that the ending asks for.
+///
+/// # Errors
+/// An unknown ending, or the file cannot be written.
+pub fn write_curve(path: &Path, history: &[EpochReport]) -> Result<(), Failure> {
+    let text = match CurveFormat::from_ending(path)? {
+        CurveFormat::Csv => csv(history),
+        CurveFormat::Svg => curve_chart(history).on_white(),
+    };
+    write_whole(path, text.as_bytes()).map_err(|e| Failure::failed(format!("{}: {e}", shown(path))))
+}
+
+fn csv(history: &[EpochReport]) -> String {
+    let mut table = HEADINGS.join(",") + "\n";
+    for row in history {
+        let held_out = row.held_out_loss.map_or(String::new(), |l| l.to_string());
+        table += &format!(
+            "{},{},{held_out},{:.4},{:.0}\n",
+            row.epoch, row.train_loss, row.seconds, row.rows_per_s
+        );
+    }
+    table
+}
+
+/// Both losses over the epochs, on a logarithmic axis.
+pub fn curve_chart(history: &[EpochReport]) -> Svg {
+    let positive = history
+        .iter()
+        .flat_map(|row| [Some(row.train_loss), row.held_out_loss])
+        .flatten()
+        .filter(|loss| *loss > 0.0);
+    // A logarithmic axis has no zero: a loss of zero is drawn below all others.
+    let floor = positive.reduce(f64::min).map_or(1e-9, |low| low / 1.2);
+    let line = |name: &str, loss: fn(&EpochReport) -> Option<f64>| {
+        let points = history.iter();
+        let points = points.filter_map(|r| Some((r.epoch.into(), loss(r)?.max(floor))));
+        Line::new(name, points)
+    };
+    let lines = [
+        line("training", |r| Some(r.train_loss)),
+        line("held out", |r| r.held_out_loss),
+    ];
+    line_chart(&lines, "epoch", "mean loss", Scale::Linear)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn row(epoch: u32, train_loss: f64, held_out_loss: Option<f64>) -> EpochReport {
+        EpochReport {
+            epoch,
+            epochs: 3,
+            train_loss,
+            held_out_loss,
+            seconds: 0.5,
+            rows_per_s: 1234.5,
+            best: false,
+        }
+    }
+
+    /// The table has a line for each epoch; the picture survives no epoch, one epoch and zero loss.
+    #[test]
+    fn curves_are_written() {
+        let folder = tempfile::tempdir().unwrap();
+        let written = |name: &str, history: &[EpochReport]| {
+            let path = folder.path().join(name);
+            write_curve(&path, history).unwrap();
+            std::fs::read_to_string(path).unwrap()
+        };
+        let rows = [row(1, 0.25, Some(0.5)), row(2, 0.125, None)];
+        assert_eq!(
+            written("new/curve.csv", &rows),
+            "epoch,train_loss,held_out_loss,seconds,rows_per_s\n1,0.25,0.5,0.5000,1234\n2,0.125,,0.5000,1234\n"
+        );
+        for (name, history) in [
+            ("none.svg", vec![]),
+            ("one.SVG", vec![row(1, 0.1, Some(0.1))]),
+            ("zero.svg", vec![row(1, 0.0, None), row(2, 0.0, None)]),
+        ] {
+            assert!(written(name, &history).ends_with("</svg>\n"));
+        }
+    }
+}

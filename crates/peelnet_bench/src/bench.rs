@@ -1,0 +1,103 @@
+//! Methods on scenes: what `peelnet bench` measures, as plain functions.
+
+pub use crate::{records::Bench, stage::Progress};
+
+use crate::{
+    EvalError, Partial, Row,
+    compare::{Plan, compare},
+    load,
+    stage::{Watch, exact_method},
+};
+use peelnet_model::Model;
+use peelnet_render::gpu::Gpu;
+use peelnet_scene::Scene;
+use std::sync::atomic::AtomicBool;
+
+pub fn trained_on<'a>(
+    scenes: &[Scene],
+    models: impl IntoIterator<Item = &'a Model>,
+) -> Vec<String> {
+    let datasets = models.into_iter().filter_map(|m| m.meta.dataset.as_ref());
+    let all: Vec<&String> = datasets.flat_map(|dataset| &dataset.scenes).collect();
+    let names = scenes.iter().map(|s| &s.name);
+    names.filter(|name| all.contains(name)).cloned().collect()
+}
+
+/// Compares methods on every view of the scenes and returns the rows.
+///
+/// ```no_run
+/// use peelnet_bench::{bench::bench, compare::Plan};
+/// use peelnet_render::gpu::{AdapterRequest, Gpu};
+/// use peelnet_scene::Scene;
+///
+/// let gpu = Gpu::open(&AdapterRequest::Auto)?;
+/// let scene = Scene::load("data/scenes/cups.toml")?;
+/// let methods = ["mboit4".parse()?, "wboit-eq9".parse()?];
+/// for row in bench(&gpu, &[scene], &Plan::new([512, 384], &methods))? {
+///     println!("{} on {}: {:.2e} in {:?} ms", row.method, row.scene, row.mse_linear, row.time_ms);
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// If a method cannot draw, or a picture cannot be written.
+pub fn bench(gpu: &Gpu, scenes: &[Scene], plan: &Plan<'_>) -> Result<Vec<Row>, EvalError> {
+    let partial = Partial::new(None, serde_json::Value::Null);
+    let stop = AtomicBool::new(false);
+    Ok(bench_watched(gpu, scenes, plan, partial, &stop, &mut |_| {})?.rows)
+}
+
+/// Rows and pictures name their scene.
+///
+/// # Errors
+/// Two scenes of one name.
+pub(crate) fn check_names(scenes: &[Scene]) -> Result<(), EvalError> {
+    for (i, scene) in scenes.iter().enumerate() {
+        if let Some(other) = scenes[..i].iter().find(|s| s.name == scene.name) {
+            return Err(EvalError::SameName {
+                name: scene.name.clone(),
+                first: other.source.clone(),
+                second: scene.source.clone(),
+            });
+        }
+    }
+    Ok(())
+}
+
+/// As [`bench()`], but continues what `partial` holds, adds each finished view to it, reports progress, and can be stopped.
+///
+/// # Errors
+/// As [`bench()`]; [`EvalError::Interrupted`] once `stop` is set.
+pub fn bench_watched(
+    gpu: &Gpu,
+    scenes: &[Scene],
+    plan: &Plan<'_>,
+    mut partial: Partial,
+    stop: &AtomicBool,
+    report: &mut dyn FnMut(Progress),
+) -> Result<Bench, EvalError> {
+    check_names(scenes)?;
+    let load_before = load();
+    let views: usize = scenes
+        .iter()
+        .map(|s| plan.views_of(s).saturating_sub(partial.done(&s.name).len()))
+        .sum();
+    // The exact method is drawn whether it is in the plan or not.
+    let exact = usize::from(!plan.methods.contains(&exact_method()));
+    // The compared frame, and where any are timed one more to warm up.
+    let frames_of_each = match plan.frames {
+        0 => 1,
+        n => n as usize + 2,
+    };
+    let total = (views * (plan.methods.len() + exact) * frames_of_each) as u64;
+    let mut watch = Watch::new(total, stop, report);
+    for scene in scenes {
+        compare(gpu, scene, plan, &mut partial, &mut watch)?;
+    }
+    Ok(Bench {
+        load: [load_before, load()],
+        settings: None,
+        trained_on: trained_on(scenes, plan.models),
+        rows: partial.finish(),
+    })
+}

@@ -1,0 +1,167 @@
+//! The files of a bench: `results.json`, `results.csv`, `table.md`, `pareto.svg`, `pareto-mean.svg` and `report.html`.
+
+pub(crate) mod page;
+
+use crate::chart::{Bubble, Svg, bubble_chart};
+use crate::report::{
+    Files, Measurement, Results, Table,
+    files::csv,
+    table::{marked, number, scene_heading},
+};
+use crate::{
+    bench::Bench,
+    front::{self, BASE, EXACT_MSE, Mean, Point, untimed},
+    rows::{Bytes, MOMENTS, Rows, WEIGHTED},
+};
+
+/// Headings of errors over those of [`WEIGHTED`] and [`MOMENTS`], and of times over those of [`BASE`].
+const TO_WEIGHTED: &str = "/ wboit-eq9";
+const TO_MOMENTS: &str = "/ mboit4";
+const TO_BASE: &str = "time / hardware blending";
+
+/// How far a method is behind the front.
+const TIME_TO_FRONT: &str = "time / front at equal error";
+const ERROR_TO_FRONT: &str = "error / front at equal time";
+
+impl Measurement for Bench {
+    const FILES: Files<Self> = &[
+        ("pareto.svg", |r, _| Ok(r.chart(Mean::Geometric).on_white())),
+        ("pareto-mean.svg", |r, _| {
+            Ok(r.chart(Mean::Arithmetic).on_white())
+        }),
+        ("report.html", page::page),
+        ("results.json", Results::json),
+        ("results.csv", |r, _| Ok(csv(&r.measured.rows))),
+        ("table.md", |r, _| Ok(r.markdown())),
+    ];
+}
+
+impl Results<Bench> {
+    fn chart(&self, mean: Mean) -> Svg {
+        chart(&front::points(&Rows::new(&self.measured.rows), mean))
+    }
+
+    /// Every method as ratios to the reference methods.
+    pub fn table(&self) -> Table {
+        let rows = Rows::new(&self.measured.rows);
+        let points = front::points(&rows, Mean::Geometric);
+        let point = |method: &str| points.iter().find(|p| p.method == method);
+        let worst = |method: &str| {
+            let (scene, x) = rows.worst_scene(method)?;
+            let scene = marked(scene, &self.measured.trained_on, ", trained on");
+            Some(format!("{x:.2} ({scene})"))
+        };
+        let dash = || "–".to_owned();
+        Table::of(
+            &rows.methods(),
+            &[
+                ("method", &|m| (*m).to_owned()),
+                ("MSE (linear)", &|m| mse(rows.error_of(m))),
+                (TO_WEIGHTED, &|m| number(rows.error_ratio(m, WEIGHTED), 3)),
+                (TO_MOMENTS, &|m| number(rows.error_ratio(m, MOMENTS), 3)),
+                ("worst scene / mboit4", &|m| worst(m).unwrap_or_else(dash)),
+                (TO_BASE, &|m| number(rows.time_ratio(m, BASE), 3)),
+                ("time / mboit4", &|m| number(rows.time_ratio(m, MOMENTS), 3)),
+                ("time / wboit-eq9", &|m| {
+                    number(rows.time_ratio(m, WEIGHTED), 3)
+                }),
+                ("bytes a pixel (mean, median, most)", &|m| {
+                    let own = rows.of_method(m).bytes();
+                    own.map_or_else(dash, |b| bytes(&b))
+                }),
+                (TIME_TO_FRONT, &|m| {
+                    number(point(m).map(|p| p.time_at_equal_error), 2)
+                }),
+                (ERROR_TO_FRONT, &|m| {
+                    number(point(m).map(|p| p.error_at_equal_time), 2)
+                }),
+            ],
+        )
+    }
+
+    /// Times on every scene as ratios to hardware blending, the fastest exact method first: whether it is the right answer depends on the
+    /// scene more than on anything else.
+    pub fn times_by_scene(&self) -> Table {
+        let rows = Rows::new(&self.measured.rows);
+        let scenes = rows.scenes();
+        let points = |scene: &&str| front::points(&rows.of_scene(scene), Mean::Geometric);
+        let points: Vec<Vec<Point>> = scenes.iter().map(points).collect();
+        // Points come by time.
+        let exact = points.iter().map(|all| {
+            let first = all.iter().find(|p| p.is_exact());
+            let first = first.map(|p| format!("{:.2} ({})", p.time, p.method));
+            first.unwrap_or_else(|| "–".to_owned())
+        });
+        let first = std::iter::once("the fastest exact one".to_owned());
+        let first = first.chain(exact).collect();
+        let trained_on = &self.measured.trained_on;
+        let named = scenes.iter().map(|s| scene_heading(s, trained_on));
+        let mut table = Table::matrix(TO_BASE, named, &rows.methods(), |method, k| {
+            let own = points[k].iter().find(|p| p.method == method);
+            number(own.map(|p| p.time), 2)
+        });
+        table.rows.insert(0, first);
+        table
+    }
+
+    fn markdown(&self) -> String {
+        let rows = Rows::new(&self.measured.rows);
+        let untimed = untimed(&rows);
+        let why = untimed
+            .iter()
+            .map(|(method, why)| format!(" {method} has no time: {why}."));
+        format!(
+            "{}\nErrors against `abuffer` in linear light over the whole frame, geometric means over scenes and views.{} {}\n\n{}",
+            self.table().markdown(),
+            why.collect::<String>(),
+            self.credit(),
+            self.times_by_scene().markdown(),
+        )
+    }
+}
+
+/// A mean squared error; 0 of an exact method.
+fn mse(error: Option<f64>) -> String {
+    error.map_or_else(|| "0".to_owned(), |x| format!("{x:.2e}"))
+}
+
+/// Bytes a pixel: one number, or mean, median and most over the views.
+fn bytes(b: &Bytes) -> String {
+    if b.is_one() {
+        format!("{:.0}", b.most)
+    } else {
+        format!("{:.0}, {:.0}, {:.0}", b.mean, b.median, b.most)
+    }
+}
+
+/// Error against time, the Pareto front drawn through it, a bubble for each method as large as its bytes per pixel.
+pub(crate) fn chart(points: &[Point]) -> Svg {
+    let bubble = |p: &Point| {
+        let error = if p.is_exact() {
+            "exact".to_owned()
+        } else {
+            format!("MSE {:.2e}", p.error)
+        };
+        Bubble {
+            name: p.method.clone(),
+            title: format!(
+                "{}: {error}, {:.2} x hardware blending, {} bytes a pixel",
+                p.method,
+                p.time,
+                bytes(&p.bytes)
+            ),
+            x: p.time,
+            y: p.error,
+            weight: p.bytes.mean,
+            on_front: p.on_front,
+        }
+    };
+    let bubbles: Vec<Bubble> = points.iter().map(bubble).collect();
+    let x = if points.iter().any(|p| p.method == BASE) {
+        "time, times hardware blending without sorting"
+    } else {
+        "time, milliseconds"
+    };
+    let y = "mean squared error, linear light";
+    bubble_chart(&bubbles, x, y, (EXACT_MSE, "exact"))
+}

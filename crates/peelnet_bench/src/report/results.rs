@@ -1,0 +1,91 @@
+use crate::Machine;
+use crate::report::{ReportError, write_file};
+use peelnet_core::files::printable_json;
+use serde::{Deserialize, Serialize, de::DeserializeOwned};
+use std::path::Path;
+
+/// Bytes of a results file that are read: a hundred thousand rows have half of it.
+const MAX_BYTES: u64 = 1 << 28;
+
+/// A finished measurement: what was measured, with which command, and on which machine, which names the version of peelnet as well.
+///
+/// Its JSON is one object: `machine`, `command`, and the fields of `measured` beside them.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Results<T> {
+    pub machine: Machine,
+    /// The command line, or what else started the measurement.
+    pub command: String,
+    #[serde(flatten)]
+    pub measured: T,
+}
+
+/// Names and texts of files, which take pictures from `images/` in their folder.
+pub type Files<T> = &'static [(&'static str, Text<T>)];
+type Text<T> = fn(&Results<T>, &Path) -> Result<String, ReportError>;
+
+/// A measurement that is written as a folder of files.
+pub trait Measurement: Serialize + Sized + 'static {
+    /// One of them is the JSON.
+    const FILES: Files<Self>;
+}
+
+impl<T> Results<T> {
+    pub fn new(machine: Machine, command: impl Into<String>, measured: T) -> Self {
+        Self {
+            machine,
+            command: command.into(),
+            measured,
+        }
+    }
+
+    /// The sentence under a table of figures.
+    pub(crate) fn credit(&self) -> String {
+        let m = &self.machine;
+        format!(
+            "Measured on {} ({}, {} cores) with `{}`.",
+            m.adapter, m.cpu, m.cores, self.command
+        )
+    }
+}
+
+impl<T: Measurement> Results<T> {
+    pub fn files() -> Vec<&'static str> {
+        T::FILES.iter().map(|(name, _)| *name).collect()
+    }
+
+    /// Writes the files into a folder; pages show the pictures in `images/` in it.
+    ///
+    /// # Errors
+    /// If a file cannot be written, or a picture not be read.
+    pub fn write(&self, folder: &Path) -> Result<(), ReportError> {
+        for (name, text) in T::FILES {
+            let text = text(self, folder)?;
+            // A chart of nothing is left out.
+            if !(text.is_empty() && name.ends_with(".svg")) {
+                write_file(&folder.join(name), text)?;
+            }
+        }
+        Ok(())
+    }
+
+    pub(crate) fn json(&self, _: &Path) -> Result<String, ReportError> {
+        let json = serde_json::to_string_pretty(self)
+            .expect("results have string keys only, and floats serialise always");
+        Ok(printable_json(&format!("{json}\n")).into_owned())
+    }
+}
+
+impl<T: DeserializeOwned> Results<T> {
+    /// Reads what was written as JSON: a file, or the `results.json` in a folder.
+    ///
+    /// # Errors
+    /// A file that cannot be read, or that holds something else.
+    pub fn read(path: &Path) -> Result<Self, ReportError> {
+        let file = path.join("results.json");
+        let path = if path.is_dir() { &*file } else { path };
+        let bytes = peelnet_core::files::read(path, MAX_BYTES);
+        let bytes = bytes.map_err(ReportError::of(path, "cannot read"))?;
+        let read = serde_json::from_slice(&bytes);
+        read.map_err(ReportError::of(path, "not a result of this kind"))
+    }
+}

@@ -1,0 +1,175 @@
+//! Scenes on the GPU and methods that draw them, frames in turn, and what is reported of both.
+
+use crate::{EvalError, compare::EXACT};
+use glam::Vec3;
+use peelnet_render::gpu::Gpu;
+use peelnet_render::{
+    Frame, Image, MethodOptions, MethodSpec, Prepared, Profile, RenderError, Renderer,
+};
+use peelnet_scene::{Camera, Scene};
+use std::sync::atomic::{AtomicBool, Ordering};
+
+#[derive(Debug)]
+pub enum Progress {
+    /// Frame `done` of at most `total` (0 where that is not known) was drawn: of which scene, with which method.
+    Drawn { done: u64, total: u64, what: String },
+    /// A method needs more than the adapter allows and is left out of a scene from here on: which, and why.
+    LeftOut(String),
+}
+
+pub(crate) fn check_stop(stop: &AtomicBool) -> Result<(), EvalError> {
+    match stop.load(Ordering::Relaxed) {
+        true => Err(EvalError::Interrupted),
+        false => Ok(()),
+    }
+}
+
+/// Counts frames, reports them, and ends the measurement where the user asks for it.
+pub(crate) struct Watch<'a> {
+    pub done: u64,
+    pub total: u64,
+    pub stop: &'a AtomicBool,
+    pub report: &'a mut dyn FnMut(Progress),
+}
+
+impl<'a> Watch<'a> {
+    pub fn new(total: u64, stop: &'a AtomicBool, report: &'a mut dyn FnMut(Progress)) -> Self {
+        Self {
+            done: 0,
+            total,
+            stop,
+            report,
+        }
+    }
+
+    pub fn check(&self) -> Result<(), EvalError> {
+        check_stop(self.stop)
+    }
+
+    pub fn drawn(&mut self, scene: &str, method: &str) {
+        self.done += 1;
+        (self.report)(Progress::Drawn {
+            done: self.done,
+            total: self.total,
+            what: format!("{scene} with {method}"),
+        });
+    }
+
+    pub fn left_out(&mut self, scene: &str, method: &str, why: &str) {
+        let what = format!("{method} is left out of {scene}: {why}");
+        (self.report)(Progress::LeftOut(what));
+    }
+}
+
+/// A scene on the GPU. Errors name it and the method.
+pub(crate) struct Stage<'a> {
+    pub scene: &'a Scene,
+    pub renderer: Renderer,
+}
+
+pub(crate) struct Ready {
+    pub name: String,
+    pub prepared: Prepared,
+}
+
+/// At the origin, looking along −z, 90° high.
+pub(crate) fn camera([near, far]: [f32; 2]) -> Camera {
+    Camera {
+        position: Vec3::ZERO,
+        target: Vec3::NEG_Z,
+        up: Vec3::Y,
+        fov_y_degrees: 90.0,
+        near,
+        far,
+    }
+}
+
+pub(crate) fn quad([a, b, c, d]: [Vec3; 4]) -> [[Vec3; 3]; 2] {
+    [[a, b, c], [a, c, d]]
+}
+
+pub(crate) fn exact_method() -> MethodSpec {
+    EXACT.parse().expect("it is in the list of methods")
+}
+
+impl<'a> Stage<'a> {
+    pub fn new(gpu: &Gpu, scene: &'a Scene) -> Result<Self, EvalError> {
+        let renderer = Renderer::new(gpu, scene);
+        Ok(Self {
+            renderer: renderer.map_err(EvalError::render(&scene.name, "upload"))?,
+            scene,
+        })
+    }
+
+    pub fn failed(&self, method: &str) -> impl FnOnce(RenderError) -> EvalError {
+        EvalError::render(&self.scene.name, method)
+    }
+
+    pub fn ready(&self, method: &MethodSpec, options: MethodOptions) -> Result<Ready, EvalError> {
+        self.prepare(&method.to_string(), |r| r.method(method, options))
+    }
+
+    /// Which surfaces each pixel shows.
+    pub fn surfaces(&self, size: [u32; 2], samples: u32) -> Result<Ready, EvalError> {
+        self.prepare("surfaces", |renderer| renderer.surfaces(size, samples))
+    }
+
+    /// Something else to draw, with the name that errors give it.
+    pub fn prepare(
+        &self,
+        name: &str,
+        prepare: impl FnOnce(&Renderer) -> Result<Prepared, RenderError>,
+    ) -> Result<Ready, EvalError> {
+        let prepared = prepare(&self.renderer).map_err(self.failed(name))?;
+        let name = name.to_owned();
+        Ok(Ready { name, prepared })
+    }
+
+    pub fn image(&self, ready: &mut Ready, camera: &Camera) -> Result<Frame, EvalError> {
+        let frame = self.renderer.image(&mut ready.prepared, camera);
+        frame.map_err(self.failed(&ready.name))
+    }
+
+    /// The image of a view by a method that draws nothing else.
+    pub fn draw(
+        &self,
+        method: &MethodSpec,
+        options: MethodOptions,
+        camera: &Camera,
+    ) -> Result<Image, EvalError> {
+        let mut ready = self.ready(method, options)?;
+        Ok(self.image(&mut ready, camera)?.image)
+    }
+}
+
+/// Times of frames that are drawn in turn, so that whatever else the machine does affects all alike; the first `warm_up` of each do not
+/// count.
+pub(crate) fn in_turn(
+    all: &mut [(&Stage<'_>, &mut Ready)],
+    camera: &Camera,
+    warm_up: u32,
+    frames: u32,
+    watch: &mut Watch<'_>,
+) -> Result<Vec<Vec<Profile>>, EvalError> {
+    let mut found = vec![Vec::new(); all.len()];
+    for number in 0..warm_up + frames {
+        for ((stage, ready), found) in all.iter_mut().zip(&mut found) {
+            watch.check()?;
+            let frame = stage.renderer.profile(&mut ready.prepared, camera);
+            let frame = frame.map_err(stage.failed(&ready.name))?;
+            if number >= warm_up {
+                found.push(frame);
+            }
+            watch.drawn(&stage.scene.name, &ready.name);
+        }
+    }
+    Ok(found)
+}
+
+/// A fraction of the values is no larger (nearest rank); `None` of nothing.
+pub(crate) fn percentile(values: impl IntoIterator<Item = f64>, fraction: f64) -> Option<f64> {
+    let mut values: Vec<f64> = values.into_iter().collect();
+    values.sort_by(f64::total_cmp);
+    let rank = (fraction * values.len() as f64).ceil() as usize;
+    values.get(rank.max(1) - 1).copied()
+}

@@ -1,0 +1,176 @@
+//! How many fragments each pixel has, and the prefix sum of that.
+
+use crate::geometry::{
+    FrameTargets, GeometryPass, GeometryPipelines, RenderError, SceneBuffers,
+    frame::attachment,
+    long_runs::{self, kernel},
+};
+use crate::gpu::{Gpu, Kernel, bind::Bind, groups_2d, record::Recorder, wgpu};
+
+/// Pixels of one block of the prefix sum; `BLOCK` in `peel/scan_blocks.wgsl`.
+const BLOCK: u32 = 256;
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FragmentCount {
+    pub total: u64,
+    /// Fragments in the fullest pixel.
+    pub most: u32,
+}
+
+/// The count pass and the three kernels of the prefix sum.
+#[derive(Debug)]
+pub struct CountPass {
+    /// Fragments per pixel, row-major; the S-buffer's second pass counts it down to zero.
+    pub counts: wgpu::Buffer,
+    /// First fragment of each pixel; one entry more than pixels, the last one the total.
+    pub offsets: wgpu::Buffer,
+    /// See [`Self::found`].
+    pub total: wgpu::Buffer,
+    /// What is wrong with the frame's fragments, see [`Self::check`].
+    pub faults: wgpu::Buffer,
+    // A pass needs an attachment; nothing is written to this one.
+    attachment: wgpu::TextureView,
+    pipelines: GeometryPipelines,
+    /// With the threads of each.
+    kernels: [(Kernel, u32); 3],
+}
+
+impl CountPass {
+    /// Builds the pass for a frame. `features` may hold `sampled`.
+    pub fn new(
+        scene: &SceneBuffers,
+        frame: &FrameTargets,
+        features: &[&str],
+    ) -> Result<Self, RenderError> {
+        let gpu = &scene.gpu;
+        let pixels = frame.pixels();
+        let counts = gpu.storage("fragment counts", u64::from(pixels) * 4)?;
+        let offsets = gpu.storage("fragment offsets", u64::from(pixels) * 4 + 4)?;
+        let blocks_count = pixels.div_ceil(BLOCK);
+        let blocks = gpu.storage("prefix-sum blocks", u64::from(blocks_count) * 8)?;
+        let total = gpu.storage("fragment total", 12)?;
+        let faults = gpu.storage("faults", 16)?;
+        let attachment = unwritten_texture(gpu, frame)?;
+        let pass = GeometryPass {
+            label: "count",
+            shader: "peel::count",
+            features,
+            entries: &[Bind::Write(&counts)],
+            ..GeometryPass::NONE
+        };
+        let pipelines = scene.pipelines(frame, &pass)?;
+        let extent = [pixels, blocks_count, groups_2d(blocks_count)[0], 0];
+        let extent = gpu.upload("extent", &extent, wgpu::BufferUsages::UNIFORM);
+        let extent = Bind::Uniform(&extent);
+        let parameters = long_runs::parameters();
+        let kernel = |shader, entries: &[_]| kernel(gpu, shader, &[], &parameters, entries);
+        let scan = [extent, Bind::Read(&counts), Bind::Write(&blocks)];
+        let top = [extent, Bind::Write(&blocks), Bind::Write(&total)];
+        let (counted, of_blocks) = (Bind::Read(&counts), Bind::Read(&blocks));
+        let sums = [extent, counted, of_blocks, Bind::Write(&offsets)];
+        let kernels = [
+            (kernel("peel::scan_blocks", &scan)?, blocks_count),
+            (kernel("peel::scan_top", &top)?, 1),
+            (kernel("peel::scan_pixels", &sums)?, blocks_count),
+        ];
+        Ok(Self {
+            counts,
+            offsets,
+            total,
+            faults,
+            attachment,
+            pipelines,
+            kernels,
+        })
+    }
+
+    /// Counts a frame; [`Self::total`] holds the result once the commands are done.
+    pub fn encode(&self, recorder: &mut Recorder<'_>, scene: &SceneBuffers, frame: &FrameTargets) {
+        recorder.encoder().clear_buffer(&self.counts, 0, None);
+        recorder.encoder().clear_buffer(&self.faults, 0, None);
+        {
+            let mut pass = recorder.render("count", &[self.attachment()], None);
+            scene.draw(&mut pass, frame, &self.pipelines);
+        }
+        for (kernel, threads) in &self.kernels {
+            kernel.dispatch(recorder, *threads);
+        }
+    }
+
+    /// What was found, from the words of [`Self::total`].
+    pub fn found(words: &[u32]) -> Result<FragmentCount, RenderError> {
+        let word = |i: usize| u64::from(words.get(i).copied().unwrap_or(0));
+        let total = word(2) << 32 | word(0);
+        if total > u64::from(u32::MAX) {
+            return Err(RenderError::Refused(format!(
+                "a frame holds {total} fragments or more, beyond what 32-bit offsets can count; draw it in smaller frames"
+            )));
+        }
+        Ok(FragmentCount {
+            total,
+            most: word(1) as u32,
+        })
+    }
+
+    /// Nothing, for words of [`Self::faults`] without a fault in a frame of this width.
+    ///
+    /// # Errors
+    /// How many fragments do not come before the next one of their pixel, were counted and not stored, or stored and not counted: a bug of
+    /// ours or of the GPU's driver.
+    pub fn check(words: &[u32], width: u32) -> Result<(), RenderError> {
+        let &[unsorted, lost, uncounted, last] = words else {
+            return Ok(());
+        };
+        if [unsorted, lost, uncounted] == [0; 3] {
+            return Ok(());
+        }
+        // The last pixel where anything is wrong, counted from 1.
+        let pixel = last.saturating_sub(1);
+        Err(RenderError::Refused(format!(
+            "the fragments of this frame are wrong: {unsorted} out of order, {lost} lost, {uncounted} found twice, the last at pixel \
+             ({}, {}). This is a fault of peelnet or of the GPU's driver: please report it with what `peelnet doctor` prints. Depth \
+             peeling needs no sort",
+            pixel % width,
+            pixel / width
+        )))
+    }
+
+    /// Counts a frame, submits and reads the result back.
+    #[cfg(not(target_arch = "wasm32"))]
+    pub fn run(
+        &self,
+        recorder: &mut Recorder<'_>,
+        scene: &SceneBuffers,
+        frame: &FrameTargets,
+    ) -> Result<FragmentCount, RenderError> {
+        self.encode(recorder, scene, frame);
+        recorder.submit();
+        Self::found(&scene.gpu.read(&self.total, 0..self.total.size())?)
+    }
+
+    /// The attachment of passes that write storage only.
+    pub fn attachment(&self) -> Option<wgpu::RenderPassColorAttachment<'_>> {
+        unwritten_attachment(&self.attachment)
+    }
+}
+
+/// Format of the attachment of passes that write storage alone: WebGPU wants one.
+pub(crate) const UNWRITTEN: wgpu::TextureFormat = wgpu::TextureFormat::R8Unorm;
+
+/// That attachment's texture, a byte a pixel.
+pub fn unwritten_texture(
+    gpu: &Gpu,
+    frame: &FrameTargets,
+) -> Result<wgpu::TextureView, RenderError> {
+    let none = wgpu::TextureUsages::empty();
+    Ok(gpu.texture("no attachment", UNWRITTEN, frame.size, 1, none)?)
+}
+
+/// The attachment, cleared and not stored.
+pub fn unwritten_attachment(
+    view: &wgpu::TextureView,
+) -> Option<wgpu::RenderPassColorAttachment<'_>> {
+    let mut cleared = attachment(view, wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT))?;
+    cleared.ops.store = wgpu::StoreOp::Discard;
+    Some(cleared)
+}

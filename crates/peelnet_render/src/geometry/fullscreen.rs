@@ -1,0 +1,73 @@
+//! A pass over every pixel, without geometry.
+
+use crate::geometry::RenderError;
+use crate::gpu::{
+    Gpu, RenderPipeline,
+    bind::{Bind, Bound},
+    record::Recorder,
+    wgpu,
+};
+
+#[derive(Debug)]
+pub struct FullscreenPass {
+    label: String,
+    pipeline: wgpu::RenderPipeline,
+    group: Bound,
+}
+
+impl FullscreenPass {
+    /// Builds the pass, onto targets of so many samples a pixel; `extra` are modules that are not in `shaders/`, `entries` the bindings of
+    /// group 0 in order.
+    pub fn new(
+        gpu: &Gpu,
+        shader: &str,
+        features: &[&str],
+        extra: &[(&str, &str)],
+        entries: &[Bind<'_>],
+        targets: &[Option<wgpu::ColorTargetState>],
+        samples: u32,
+    ) -> Result<Self, RenderError> {
+        let group = gpu.bind(shader, wgpu::ShaderStages::FRAGMENT, entries);
+        let wgsl = crate::shaders::link(shader, features, extra)?;
+        let pipeline = gpu.render_pipeline(&RenderPipeline {
+            label: shader,
+            vertex: [shader, &wgsl],
+            fragment: [shader, &wgsl],
+            groups: &[Some(&group)],
+            buffers: &[],
+            targets,
+            depth: None,
+            samples,
+            culled: None,
+        });
+        Ok(Self {
+            label: shader.to_owned(),
+            pipeline,
+            group,
+        })
+    }
+
+    pub fn draw(
+        &self,
+        recorder: &mut Recorder<'_>,
+        colors: &[Option<wgpu::RenderPassColorAttachment<'_>>],
+    ) {
+        self.draw_within(recorder, colors, None);
+    }
+
+    /// Records the pass over a rectangle: x, y, width, height.
+    pub fn draw_within(
+        &self,
+        recorder: &mut Recorder<'_>,
+        colors: &[Option<wgpu::RenderPassColorAttachment<'_>>],
+        rectangle: Option<[u32; 4]>,
+    ) {
+        let mut pass = recorder.render(&self.label, colors, None);
+        if let Some([x, y, width, height]) = rectangle {
+            pass.set_scissor_rect(x, y, width, height);
+        }
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, &self.group.group, &[]);
+        pass.draw(0..3, 0..1);
+    }
+}

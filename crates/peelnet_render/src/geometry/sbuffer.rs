@@ -1,0 +1,374 @@
+//! The S-buffer (Vasilakis & Fudos 2012): every fragment of a tile, in storage of exactly the right size, sorted.
+//!
+//! Storage is bounded: a frame whose fragments exceed the budget is worked off in tiles, runs of row-major pixels
+//! whose fragments fit. Nothing is dropped: every sort counts what is out of order, lost or stored twice behind it ([`CountPass::faults`]).
+
+use crate::geometry::{
+    FrameTargets, GeometryPass, GeometryPipelines, RenderError, SceneBuffers,
+    count::{CountPass, FragmentCount},
+    error::over_budget,
+    long_runs::{self, LongRuns, MAX_RUN, SHORT, kernel},
+};
+use crate::gpu::{Gpu, GpuError, Kernel, bind::Bind, groups_2d, record::Recorder, wgpu};
+use bytemuck::{Pod, Zeroable};
+
+/// Bytes of a fragment's colours: with alpha, or with what it covers of each channel.
+const fn color_bytes(tinted: bool) -> u64 {
+    if tinted { 32 } else { 16 }
+}
+
+/// Layout of `Tile` in `peel/tile.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable, PartialEq, Eq)]
+pub struct Tile {
+    pub begin: u32,
+    /// One past the last pixel.
+    pub end: u32,
+    /// Fragments that storage holds; those beyond are left out, and seen in the counts.
+    pub capacity: u32,
+    groups: u32,
+}
+
+impl Tile {
+    pub fn new(begin: u32, end: u32, capacity: u64) -> Self {
+        Self {
+            begin,
+            end,
+            capacity: u32::try_from(capacity).unwrap_or(u32::MAX),
+            groups: groups_2d(end - begin)[0],
+        }
+    }
+
+    /// Its rectangle in a frame of this width: whole rows or a part of one; x, y, width, height.
+    pub fn scissor(&self, width: u32) -> [u32; 4] {
+        let (first, last) = (self.begin / width, (self.end - 1) / width);
+        if first == last {
+            [self.begin % width, first, self.end - self.begin, 1]
+        } else {
+            [0, first, width, last - first + 1]
+        }
+    }
+}
+
+/// Cuts a frame into tiles of at most `capacity` fragments. `offsets` has one entry more than the frame has pixels.
+///
+/// Tiles are whole rows where a row fits, else runs inside one row.
+///
+/// # Errors
+/// A single pixel that does not fit.
+pub fn tiles(offsets: &[u32], width: u32, capacity: u64) -> Result<Vec<Tile>, RenderError> {
+    let pixels = offsets.len() as u32 - 1;
+    let load = |begin: u32, end: u32| u64::from(offsets[end as usize] - offsets[begin as usize]);
+    let mut tiles = Vec::new();
+    let mut begin = 0;
+    while begin < pixels {
+        // Grow by rows, then (if not even one row fits) by pixels.
+        let mut end = begin;
+        if begin % width == 0 {
+            while end < pixels && load(begin, end + width) <= capacity {
+                end += width;
+            }
+        }
+        if end == begin {
+            let row_end = (begin / width + 1) * width;
+            while end < row_end && load(begin, end + 1) <= capacity {
+                end += 1;
+            }
+        }
+        if end == begin {
+            return Err(over_budget(load(begin, begin + 1), capacity));
+        }
+        tiles.push(Tile::new(begin, end, capacity));
+        begin = end;
+    }
+    Ok(tiles)
+}
+
+/// Storage for a tile's fragments, grown to what tiles need.
+#[derive(Debug)]
+pub struct FragmentStorage {
+    /// Linear depth of each fragment.
+    pub depths: wgpu::Buffer,
+    pub triangles: wgpu::Buffer,
+    /// Un-premultiplied radiance and alpha of each fragment.
+    pub colors: wgpu::Buffer,
+    pub capacity: u64,
+}
+
+impl FragmentStorage {
+    /// Storage for `fragments` fragments, with two colours each where transmission is coloured (`tinted`).
+    pub fn new(gpu: &Gpu, fragments: u64, tinted: bool) -> Result<Self, RenderError> {
+        Ok(Self {
+            depths: gpu.storage("fragment depths", fragments * 4)?,
+            triangles: gpu.storage("fragment triangles", fragments * 4)?,
+            colors: gpu.storage("fragment colours", fragments * color_bytes(tinted))?,
+            capacity: fragments,
+        })
+    }
+}
+
+/// Store and sort, for one tile at a time.
+#[derive(Debug)]
+pub struct SBuffer {
+    pub count: CountPass,
+    /// Uniform that holds the tile being worked on.
+    pub tile: wgpu::Buffer,
+    /// Fragments that one tile may hold: what the adapter, the budget and memory allow.
+    pub limit: u64,
+    store: Option<Kernels>,
+    features: Vec<&'static str>,
+    tinted: bool,
+}
+
+#[derive(Debug)]
+struct Kernels {
+    storage: FragmentStorage,
+    /// Fragments of a pixel that are sorted.
+    most: u32,
+    store: GeometryPipelines,
+    sort: Kernel,
+    /// Where a pixel may have more than [`SHORT`] fragments.
+    long: Option<LongRuns>,
+}
+
+impl SBuffer {
+    /// Builds the passes. `budget` bounds the fragments of a tile; `features` may hold `sampled`, and one of
+    /// `dataset`, `tinted`, `layered` and `named`, which say what is kept of a fragment; `half_colors` or `byte_colors` rounds it.
+    pub fn new(
+        scene: &SceneBuffers,
+        frame: &FrameTargets,
+        budget: Option<u64>,
+        features: &[&'static str],
+    ) -> Result<Self, RenderError> {
+        let (gpu, tinted) = (&scene.gpu, features.contains(&"tinted"));
+        let limits = &gpu.limits;
+        let binding = limits
+            .max_storage_buffer_binding_size
+            .min(limits.max_buffer_size)
+            / color_bytes(tinted);
+        Ok(Self {
+            count: CountPass::new(scene, frame, features)?,
+            tile: gpu.upload("tile", &[Tile::zeroed()], wgpu::BufferUsages::UNIFORM),
+            limit: budget.map_or(binding, |b| b.clamp(1, binding)),
+            store: None,
+            features: features.to_vec(),
+            tinted,
+        })
+    }
+
+    /// Fragment storage, once [`Self::plan`] has made it.
+    pub fn storage(&self) -> Option<&FragmentStorage> {
+        self.store.as_ref().map(|k| &k.storage)
+    }
+
+    /// How long runs are sorted, once [`Self::plan`] has made room for them.
+    pub fn long_runs(&self) -> Option<&LongRuns> {
+        self.store.as_ref()?.long.as_ref()
+    }
+
+    /// Fragments of a pixel that [`Self::plan`] has made room for. A frame that has more in one is not sorted.
+    pub fn most(&self) -> u32 {
+        self.store.as_ref().map_or(SHORT, |k| k.most)
+    }
+
+    /// Bytes of one fragment in storage: depth, triangle, its colours, and its places in the orders of long runs.
+    pub fn bytes_per_fragment(&self) -> f64 {
+        let long = self.long_runs().map_or(0.0, |_| LongRuns::BYTES);
+        (4 + 4 + color_bytes(self.tinted)) as f64 + long
+    }
+
+    /// Decides the tiles of a frame of `needed` fragments and makes storage for the largest; returns whether storage was made anew, or
+    /// `None` where the frame needs several tiles and so the offsets of its pixels. Where the GPU has no memory for it, tiles get
+    /// smaller until they fit.
+    ///
+    /// # Errors
+    /// A pixel that does not fit, or a lost device.
+    pub fn plan(
+        &mut self,
+        scene: &SceneBuffers,
+        frame: &FrameTargets,
+        needed: FragmentCount,
+        offsets: Option<&[u32]>,
+    ) -> Result<Option<(Vec<Tile>, bool)>, RenderError> {
+        let FragmentCount { total, most } = needed;
+        if most > MAX_RUN {
+            return Err(over_budget(most.into(), MAX_RUN.into()));
+        }
+        let has_room = most <= self.most();
+        // A power of two, so that a moving camera does not grow it every frame.
+        let most = if has_room {
+            self.most()
+        } else {
+            most.next_power_of_two()
+        };
+        let pixels = frame.pixels();
+        loop {
+            let (mut tiles, largest) = if total <= self.limit {
+                (vec![Tile::new(0, pixels, total)], total)
+            } else if let Some(offsets) = offsets {
+                let tiles = tiles(offsets, frame.size[0], self.limit)?;
+                (tiles, self.limit)
+            } else {
+                return Ok(None);
+            };
+            let known = self.storage().map(|s| s.capacity);
+            let capacity = known.filter(|&c| c >= largest && has_room);
+            for tile in &mut tiles {
+                *tile = Tile::new(tile.begin, tile.end, capacity.unwrap_or(largest));
+            }
+            if capacity.is_some() {
+                return Ok(Some((tiles, false)));
+            }
+            // The old storage goes first, so that both are never held at once.
+            self.store = None;
+            match self.kernels(scene, frame, largest, most) {
+                Ok(kernels) => {
+                    self.store = Some(kernels);
+                    return Ok(Some((tiles, true)));
+                }
+                // Smaller tiles, from now on, until a pixel does not fit.
+                Err(RenderError::Gpu(GpuError::OutOfMemory { .. })) if largest > 1 => {
+                    self.limit = largest / 2;
+                }
+                Err(e) => return Err(e),
+            }
+        }
+    }
+
+    /// The same, reading offsets back where they are needed.
+    #[cfg(not(target_arch = "wasm32"))]
+    pub fn plan_counted(
+        &mut self,
+        scene: &SceneBuffers,
+        frame: &FrameTargets,
+        needed: FragmentCount,
+    ) -> Result<(Vec<Tile>, bool), RenderError> {
+        if let Some(planned) = self.plan(scene, frame, needed, None)? {
+            return Ok(planned);
+        }
+        let bytes = u64::from(frame.pixels()) * 4 + 4;
+        let offsets: Vec<u32> = scene.gpu.read(&self.count.offsets, 0..bytes)?;
+        let planned = self.plan(scene, frame, needed, Some(&offsets))?;
+        Ok(planned.unwrap_or_default())
+    }
+
+    fn kernels(
+        &self,
+        scene: &SceneBuffers,
+        frame: &FrameTargets,
+        fragments: u64,
+        most: u32,
+    ) -> Result<Kernels, RenderError> {
+        let gpu = &scene.gpu;
+        let storage = FragmentStorage::new(gpu, fragments, self.tinted)?;
+        let (offsets, faults) = (&self.count.offsets, &self.count.faults);
+        let stored = [
+            Bind::Write(&self.count.counts),
+            Bind::Read(offsets),
+            Bind::Write(&storage.depths),
+            Bind::Write(&storage.triangles),
+            Bind::Write(&storage.colors),
+            Bind::Uniform(&self.tile),
+        ];
+        let pass = GeometryPass {
+            label: "store",
+            shader: "peel::store",
+            features: &self.features,
+            entries: &stored,
+            ..GeometryPass::NONE
+        };
+        let store = scene.pipelines(frame, &pass)?;
+        let long = (most > SHORT)
+            .then(|| LongRuns::new(gpu, &self.tile, offsets, &storage, faults, most))
+            .transpose()?;
+        let mut sorted = vec![
+            Bind::Uniform(&self.tile),
+            Bind::Read(offsets),
+            Bind::Write(&storage.depths),
+            Bind::Write(&storage.triangles),
+            Bind::Write(&storage.colors),
+            Bind::Read(&self.count.counts),
+            Bind::Write(faults),
+        ];
+        let mut features = Vec::from_iter(self.tinted.then_some("tinted"));
+        if let Some(long) = &long {
+            sorted.push(Bind::Write(&long.order));
+            features.push("long");
+        }
+        Ok(Kernels {
+            sort: kernel(
+                gpu,
+                "peel::sort",
+                &features,
+                &long_runs::parameters(),
+                &sorted,
+            )?,
+            long,
+            most,
+            storage,
+            store,
+        })
+    }
+
+    /// Stores and sorts one tile's fragments, in storage that [`Self::plan`] made, and adds what is wrong to [`CountPass::faults`].
+    pub fn store_and_sort(
+        &self,
+        recorder: &mut Recorder<'_>,
+        scene: &SceneBuffers,
+        frame: &FrameTargets,
+        tile: &Tile,
+    ) {
+        let Some(kernels) = &self.store else {
+            return;
+        };
+        recorder.write(&self.tile, &[*tile]);
+        {
+            let mut pass = recorder.render("store", &[self.count.attachment()], None);
+            let [x, y, w, h] = tile.scissor(frame.size[0]);
+            pass.set_scissor_rect(x, y, w, h);
+            scene.draw(&mut pass, frame, &kernels.store);
+        }
+        kernels.sort.dispatch(recorder, tile.end - tile.begin);
+        if let Some(long) = &kernels.long {
+            long.sort(recorder);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn offsets(counts: &[u32]) -> Vec<u32> {
+        let mut all = vec![0];
+        for c in counts {
+            all.push(all[all.len() - 1] + c);
+        }
+        all
+    }
+
+    #[test]
+    fn tiles_cover_every_pixel_once_and_fit() {
+        let counts: Vec<u32> = (0..60).map(|i| (i * 7) % 13).collect();
+        let offsets = offsets(&counts);
+        for capacity in [12, 20, 50, 100, 1000] {
+            let tiles = tiles(&offsets, 10, capacity).expect("fits");
+            let mut next = 0;
+            for t in &tiles {
+                assert_eq!((t.begin, u64::from(t.capacity)), (next, capacity));
+                let load = offsets[t.end as usize] - offsets[t.begin as usize];
+                assert!(u64::from(load) <= capacity);
+                // A tile is whole rows or lies inside one.
+                assert!((t.begin % 10 == 0 && t.end % 10 == 0) || t.begin / 10 == (t.end - 1) / 10);
+                next = t.end;
+            }
+            assert_eq!(next, 60);
+        }
+    }
+
+    #[test]
+    fn a_pixel_beyond_the_budget_is_an_error() {
+        let error = tiles(&offsets(&[1, 9, 1]), 3, 8).unwrap_err().to_string();
+        assert!(error.contains("9 fragments") && error.contains("holds 8"));
+    }
+}

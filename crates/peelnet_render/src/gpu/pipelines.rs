@@ -1,0 +1,145 @@
+//! Compiled pipelines, kept by all that decides them: a resize, a second scene or a second method compiles none anew.
+
+use crate::gpu::{
+    Gpu,
+    bind::{Bind, Bound},
+    device::locked,
+    record::Recorder,
+};
+use std::{collections::HashMap, sync::Mutex};
+
+#[derive(Debug, Default)]
+pub(crate) struct PipelineCache {
+    render: Mutex<HashMap<String, wgpu::RenderPipeline>>,
+    compute: Mutex<HashMap<String, wgpu::ComputePipeline>>,
+}
+
+/// A compute shader, whose entry point is `main`, with its bindings.
+#[derive(Debug)]
+pub struct Kernel {
+    label: String,
+    pipeline: wgpu::ComputePipeline,
+    group: Bound,
+}
+
+impl Kernel {
+    /// Compiles the shader where its pipeline is not known yet.
+    pub fn new(gpu: &Gpu, label: &str, wgsl: &str, entries: &[Bind<'_>]) -> Self {
+        let group = gpu.bind(label, wgpu::ShaderStages::COMPUTE, entries);
+        let key = format!("{}\n{wgsl}", group.signature);
+        let all = &gpu.shared.pipelines.compute;
+        let known = locked(all).get(&key).cloned();
+        let pipeline = known.unwrap_or_else(|| {
+            let descriptor = wgpu::ComputePipelineDescriptor {
+                label: Some(label),
+                layout: Some(&gpu.layout(&[Some(&group.layout)])),
+                module: &gpu.shader(label, wgsl),
+                entry_point: Some("main"),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                cache: None,
+            };
+            let made = gpu.device.create_compute_pipeline(&descriptor);
+            locked(all).entry(key).or_insert(made).clone()
+        });
+        Self {
+            label: label.to_owned(),
+            pipeline,
+            group,
+        }
+    }
+
+    /// Records it over this many threads, in workgroups of 64.
+    pub fn dispatch(&self, recorder: &mut Recorder<'_>, threads: u32) {
+        let [x, y] = groups_2d(threads);
+        let mut pass = recorder.compute(&self.label);
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, &self.group.group, &[]);
+        pass.dispatch_workgroups(x, y, 1);
+    }
+}
+
+/// Workgroups of 64 threads over `items`, as a 2-D dispatch: one dimension holds at most 65,535 groups.
+pub fn groups_2d(items: u32) -> [u32; 2] {
+    let groups = items.div_ceil(64).max(1);
+    let x = groups.min(32_768);
+    [x, groups.div_ceil(x)]
+}
+
+/// A render pipeline that is not made yet, with the entry points `vertex_main` and `fragment_main`.
+#[derive(Debug)]
+pub struct RenderPipeline<'a> {
+    /// Label for messages.
+    pub label: &'a str,
+    /// Name and text of the vertex shader.
+    pub vertex: [&'a str; 2],
+    /// Name and text of the fragment shader.
+    pub fragment: [&'a str; 2],
+    /// Bind groups of the layouts that it takes.
+    pub groups: &'a [Option<&'a Bound>],
+    /// Vertex buffers.
+    pub buffers: &'a [Option<wgpu::VertexBufferLayout<'a>>],
+    /// Colour targets.
+    pub targets: &'a [Option<wgpu::ColorTargetState>],
+    /// Depth state.
+    pub depth: Option<wgpu::DepthStencilState>,
+    /// Samples a pixel of the targets.
+    pub samples: u32,
+    /// Faces that are not drawn.
+    pub culled: Option<wgpu::Face>,
+}
+
+impl Gpu {
+    /// A render pipeline, made where there is none that equals it yet.
+    pub fn render_pipeline(&self, made_of: &RenderPipeline<'_>) -> wgpu::RenderPipeline {
+        let RenderPipeline {
+            groups, samples, ..
+        } = made_of;
+        let signatures: Vec<_> = groups.iter().map(|g| g.map(|g| &g.signature)).collect();
+        let states = (made_of.targets, &made_of.depth, samples, made_of.culled);
+        let ([_, vertex], [_, fragment]) = (made_of.vertex, made_of.fragment);
+        let buffers = made_of.buffers;
+        let key = format!("{signatures:?}\n{states:?}\n{buffers:?}\n{vertex}\n{fragment}");
+        // Compiling takes long: the lock is not held meanwhile, and the first of two equal pipelines stays.
+        if let Some(known) = locked(&self.shared.pipelines.render).get(&key) {
+            return known.clone();
+        }
+        let [vertex, fragment] =
+            [made_of.vertex, made_of.fragment].map(|[name, wgsl]| self.shader(name, wgsl));
+        let layouts: Vec<_> = groups.iter().map(|g| g.map(|g| &g.layout)).collect();
+        let descriptor = wgpu::RenderPipelineDescriptor {
+            label: Some(made_of.label),
+            layout: Some(&self.layout(&layouts)),
+            vertex: wgpu::VertexState {
+                module: &vertex,
+                entry_point: Some("vertex_main"),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                buffers: made_of.buffers,
+            },
+            primitive: wgpu::PrimitiveState {
+                cull_mode: made_of.culled,
+                ..Default::default()
+            },
+            depth_stencil: made_of.depth.clone(),
+            multisample: wgpu::MultisampleState {
+                count: made_of.samples,
+                ..Default::default()
+            },
+            fragment: Some(wgpu::FragmentState {
+                module: &fragment,
+                entry_point: Some("fragment_main"),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                targets: made_of.targets,
+            }),
+            multiview_mask: None,
+            cache: None,
+        };
+        let made = self.device.create_render_pipeline(&descriptor);
+        let mut all = locked(&self.shared.pipelines.render);
+        all.entry(key).or_insert(made).clone()
+    }
+
+    /// Number of pipelines compiled so far.
+    pub fn compiled_pipelines(&self) -> usize {
+        locked(&self.shared.pipelines.render).len() + locked(&self.shared.pipelines.compute).len()
+    }
+}

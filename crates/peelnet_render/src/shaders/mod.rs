@@ -1,0 +1,395 @@
+//! Links the WGSL of `shaders/` into one module, and checks it.
+//!
+//! Shaders are written as modules that `import` one another and switch parts with `@if(feature)`, so that a helper
+//! exists once and a pass contains only what its scene needs. [`link`] turns a root module into plain WGSL text;
+//! it is the only place that knows the linker (WESL). Text that is not in the repository — an exported network, a
+//! method's constants — joins as an extra module. [`validate`] runs naga over the result.
+
+pub use naga;
+pub use peelnet_shaders::SOURCES;
+
+use std::{
+    borrow::Cow,
+    cell::RefCell,
+    collections::HashMap,
+    sync::{Mutex, PoisonError},
+};
+use wesl::{ModulePath, VirtualResolver, Wesl};
+
+/// Why a shader could not be made: a path that is no module's, what the linker refused, or what naga refused with its source lines.
+#[derive(Debug, thiserror::Error)]
+#[error("{0}")]
+pub struct ShaderError(String);
+
+fn no_module(path: &str) -> ShaderError {
+    ShaderError(format!(
+        "'{path}' is not a shader module path such as methods::wboit::gather"
+    ))
+}
+
+/// The text of a module as it stands in its file.
+///
+/// # Errors
+/// A module that is not in [`SOURCES`].
+pub fn source(path: &str) -> Result<&'static str, ShaderError> {
+    let found = SOURCES.iter().find(|(p, _)| *p == path);
+    found.map(|(_, text)| *text).ok_or_else(|| no_module(path))
+}
+
+/// The modules of a text that composites in slabs: of what surrounds `peelnet_network`, which says where between its bounds the share of
+/// the absorbance lies that is in front of a fragment. `layout`: `small`, `medium` or `large`.
+pub fn slab_modules(layout: &str) -> Vec<&'static str> {
+    let statistics = match layout {
+        "small" => "learned::slabs_small",
+        "medium" => "learned::slabs_medium",
+        _ => "learned::slabs_large",
+    };
+    vec![
+        "learned::zeta",
+        "learned::absorbance",
+        "learned::levels",
+        "learned::slabs",
+        statistics,
+        "learned::resolve",
+        "learned::composite",
+    ]
+}
+
+thread_local! {
+    /// The module that has another text on this thread, and that text.
+    static ALTERED: RefCell<Option<(String, String)>> = const { RefCell::new(None) };
+}
+
+/// Runs `work` with another text in place of one of the repository's modules, in all that this thread links meanwhile: for tests that change
+/// a shader and look whether it shows. Not to be nested.
+#[doc(hidden)]
+pub fn with_altered<T>(path: &str, text: &str, work: impl FnOnce() -> T) -> T {
+    struct Restore;
+    impl Drop for Restore {
+        fn drop(&mut self) {
+            ALTERED.set(None);
+        }
+    }
+    ALTERED.set(Some((path.to_owned(), text.to_owned())));
+    let _restore = Restore;
+    work()
+}
+
+/// Links `root` (a path such as `methods::wboit::gather`) with the given features on and extra modules in place.
+///
+/// Linking is deterministic, so its results are kept for the life of the process.
+///
+/// # Errors
+/// An unknown module, a missing import, or WGSL that does not parse.
+pub fn link(root: &str, features: &[&str], extra: &[(&str, &str)]) -> Result<String, ShaderError> {
+    static LINKED: Mutex<Option<HashMap<String, String>>> = Mutex::new(None);
+    let altered = ALTERED.with_borrow(Clone::clone);
+    let altered = altered.iter().map(|(p, t)| (p.as_str(), t.as_str()));
+    // Of a module's texts, the last counts.
+    let extra: Vec<_> = altered.chain(extra.iter().copied()).collect();
+    let key = format!("{root:?} {features:?} {extra:?}");
+    let linked = || LINKED.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(text) = linked().get_or_insert_default().get(&key) {
+        return Ok(text.clone());
+    }
+    let text = link_uncached(root, features, &extra)?;
+    linked().get_or_insert_default().insert(key, text.clone());
+    Ok(text)
+}
+
+fn link_uncached(
+    root: &str,
+    features: &[&str],
+    extra: &[(&str, &str)],
+) -> Result<String, ShaderError> {
+    let mut resolver = VirtualResolver::new();
+    for (path, text) in SOURCES.iter().chain(extra) {
+        resolver.add_module(module_path(path)?, Cow::Borrowed(text));
+    }
+    let mut linker = Wesl::new_barebones().set_custom_resolver(resolver);
+    let mut options = wesl::CompileOptions {
+        validate: false,
+        ..Default::default()
+    };
+    options.features.default = wesl::Feature::Disable;
+    for feature in features {
+        options
+            .features
+            .flags
+            .insert((*feature).to_owned(), wesl::Feature::Enable);
+    }
+    linker
+        .set_options(options)
+        .set_mangler(wesl::ManglerKind::Escape);
+    let linked = linker.compile(&module_path(root)?);
+    let linked = linked.map_err(|e| ShaderError(format!("linking shader {root} failed:\n{e}")))?;
+    Ok(linked.to_string())
+}
+
+fn module_path(path: &str) -> Result<ModulePath, ShaderError> {
+    format!("package::{path}")
+        .parse()
+        .map_err(|_| no_module(path))
+}
+
+/// What of naga's capabilities every WebGPU device has: WGSL's own `pack2x16float`, which only old OpenGL lacks.
+pub const PORTABLE: naga::valid::Capabilities =
+    naga::valid::Capabilities::SHADER_FLOAT16_IN_FLOAT32;
+
+/// Parses and validates WGSL with naga, with these capabilities. Returns naga's module and what it knows of it.
+///
+/// # Errors
+/// Text that naga refuses, with the source lines that it points at.
+pub fn validate(
+    label: &str,
+    wgsl: &str,
+    capabilities: naga::valid::Capabilities,
+) -> Result<(naga::Module, naga::valid::ModuleInfo), ShaderError> {
+    let invalid = |message| ShaderError(format!("shader {label} is not valid WGSL:\n{message}"));
+    let module = naga::front::wgsl::parse_str(wgsl).map_err(|e| invalid(e.emit_to_string(wgsl)))?;
+    let info = naga::valid::Validator::new(naga::valid::ValidationFlags::all(), capabilities)
+        .validate(&module)
+        .map_err(|e| invalid(e.emit_to_string(wgsl)))?;
+    Ok((module, info))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeSet;
+
+    /// A shipped network of the methods in a folder.
+    fn learned(folder: &str, features: &[&str]) -> &'static str {
+        let name = match folder {
+            "methods::deep_thesis" => "thesis",
+            "methods::nmt" => "nmt",
+            "methods::dfaoit" => "dfaoit",
+            "methods::slabs" => {
+                let layouts = ["small", "medium"];
+                let layout = layouts.into_iter().find(|l| features.contains(l));
+                layout.unwrap_or("large")
+            }
+            _ if features.contains(&"separate_ends") => "anchored-medium",
+            _ => "anchored-small",
+        };
+        peelnet_shipped_networks::find(name).expect("ships").wgsl
+    }
+
+    /// Stand-ins for the constants that methods write: whole numbers, which take the type that is needed.
+    fn parameters() -> String {
+        let imports = SOURCES.iter().flat_map(|(_, text)| text.lines());
+        let names: BTreeSet<&str> = imports
+            .filter_map(|line| line.trim().strip_prefix("import package::parameters::"))
+            .flat_map(|names| names.split(|c: char| !c.is_ascii_alphanumeric() && c != '_'))
+            .filter(|name| !name.is_empty())
+            .collect();
+        names
+            .into_iter()
+            .map(|name| format!("const {name} = 4;\n"))
+            .collect()
+    }
+
+    /// Features that materials need: some alone, and all of them.
+    const MATERIALS: [&[&str]; 10] = [
+        &["lit", "phong"],
+        &["lit", "pbr"],
+        &["lit", "pbr", "sun"],
+        &["emission"],
+        &["cutout"],
+        &["vertex_colors"],
+        &["mapped", "color_map"],
+        &["mapped", "color_map", "clear_map"],
+        &["transmission"],
+        &[
+            "lit",
+            "pbr",
+            "sun",
+            "emission",
+            "cutout",
+            "vertex_colors",
+            "mapped",
+            "color_map",
+            "clear_map",
+            "normal_map",
+            "metallic_roughness_map",
+            "occlusion_map",
+            "emissive_map",
+            "transmission",
+        ],
+    ];
+
+    /// The sets of features that a shader is linked with, by the line `// Variants: a | b c | none` at its head; only one without
+    /// any where it has no such line. Features of materials and views are not among them.
+    fn variants(text: &'static str) -> Vec<Vec<&'static str>> {
+        let mut lines = text.lines().take_while(|line| line.starts_with("//"));
+        let line = lines.find_map(|line| line.strip_prefix("// Variants: "));
+        line.unwrap_or("none")
+            .split('|')
+            .map(|set| set.split_whitespace().filter(|f| *f != "none").collect())
+            .collect()
+    }
+
+    /// Features that a view may bring to any pass over surfaces.
+    const OF_VIEWS: [&[&str]; 4] = [&[], &["opaque"], &["sampled"], &["opaque", "sampled"]];
+
+    /// Features that a text switches on, but for those of materials and views.
+    fn own_features(text: &'static str) -> BTreeSet<&'static str> {
+        let conditions = text
+            .split("@if(")
+            .skip(1)
+            .filter_map(|t| t.split(')').next());
+        let words =
+            conditions.flat_map(|c| c.split(|c: char| !c.is_ascii_alphanumeric() && c != '_'));
+        let of_scenes = |f: &&str| {
+            let known = MATERIALS.into_iter().chain(OF_VIEWS);
+            ["numbered", "material"].contains(f) || known.flatten().any(|k| k == f)
+        };
+        words.filter(|f| !f.is_empty() && !of_scenes(f)).collect()
+    }
+
+    /// Every root (a module with an entry point) links and validates in every variant that its head names, with every material
+    /// and view; all failures are reported at once.
+    #[test]
+    fn every_shader_links_and_validates() {
+        let parameters = parameters();
+        let mut failures = Vec::new();
+        let mut roots = 0;
+        for (path, text) in SOURCES {
+            let entries = ["@vertex", "@fragment", "@compute"];
+            if !entries.iter().any(|s| text.contains(s)) {
+                continue;
+            }
+            roots += 1;
+            let own = variants(text);
+            for feature in own_features(text) {
+                if !own.iter().flatten().any(|f| *f == feature) {
+                    failures.push(format!(
+                        "{path}: no variant has the feature {feature}; name one at the head of the file, as in // Variants: none | {feature}"
+                    ));
+                }
+            }
+            let over_surfaces = text.contains("Surface");
+            let carried = if over_surfaces {
+                &["numbered", "material"][..]
+            } else {
+                &[]
+            };
+            let with = |set: &[&'static str], more: &[&'static str]| {
+                let all = set.iter().chain(more).copied();
+                all.chain(carried.iter().copied()).collect::<Vec<_>>()
+            };
+            let views = own
+                .iter()
+                .flat_map(|set| OF_VIEWS.map(|view| with(set, view)));
+            let mut all: Vec<Vec<&str>> = views.collect();
+            if text.contains("surface: Surface") || text.contains("-> Surface") {
+                all.extend(MATERIALS.map(|material| with(&own[0], material)));
+            }
+            let folder = path.rsplit_once("::").map_or("", |(folder, _)| folder);
+            for features in all {
+                let extra = [
+                    ("learned::weight", learned(folder, &features)),
+                    ("parameters", parameters.as_str()),
+                ];
+                let result = link(path, &features, &extra)
+                    .and_then(|wgsl| validate(path, &wgsl, PORTABLE).map(drop));
+                if let Err(e) = result {
+                    failures.push(format!("{path} {features:?}: {e}"));
+                }
+            }
+        }
+        assert!(roots >= 20, "only {roots} shaders found");
+        assert!(failures.is_empty(), "{}", failures.join("\n"));
+    }
+
+    /// Every loop of a shader, and why a scene cannot make it long: some drivers end loops of more than 65,535 iterations without an error,
+    /// and watchdogs end what takes long. What does not stand here, or stands with another number of loops, fails.
+    const LOOPS: &[(&str, usize, &str)] = &[
+        ("helpers::weights", 1, "the parameter k, at most 16"),
+        (
+            "methods::abuffer::composite",
+            1,
+            "PIECE fragments, or SHORT",
+        ),
+        (
+            "methods::avboit::integrate",
+            1,
+            "the parameter slices, at most 1,024",
+        ),
+        ("methods::kbuffer::gather", 2, "K, at most 64; ATTEMPTS"),
+        ("methods::kbuffer::insert", 1, "K, at most 64"),
+        ("methods::kbuffer::resolve", 2, "K, at most 64"),
+        ("methods::layers::composite", 1, "PIECE fragments, or SHORT"),
+        (
+            "methods::linked_list::composite",
+            5,
+            "LONGEST nodes, and log2 of that",
+        ),
+        ("methods::low_resolution::upsample", 1, "4 texels"),
+        ("methods::mboit6::reconstruct", 1, "a constant"),
+        ("methods::mboit8::reconstruct", 11, "constants"),
+        ("methods::mboit_trig::reconstruct", 8, "MOMENTS, at most 4"),
+        ("methods::mboit_trig::roots", 1, "a constant"),
+        ("methods::stochastic::depths", 1, "SAMPLES, at most 256"),
+        ("methods::stochastic::gather", 1, "SAMPLES, at most 256"),
+        (
+            "methods::surfaces::composite",
+            1,
+            "PIECE fragments, or SHORT",
+        ),
+        ("peel::check_long", 1, "WINDOW slots"),
+        ("peel::fold", 1, "PIECE fragments"),
+        ("peel::long_chunks", 2, "WINDOW slots"),
+        (
+            "peel::long_merge",
+            2,
+            "WINDOW slots; a binary search over 22 bits",
+        ),
+        ("peel::long_windows", 1, "a binary search over 32 bits"),
+        ("peel::scan_blocks", 1, "BLOCK pixels"),
+        ("peel::scan_pixels", 1, "BLOCK pixels"),
+        (
+            "peel::scan_top",
+            3,
+            "LANES; blocks of a frame by LANES, 16,384 of 2^28 pixels",
+        ),
+        (
+            "peel::sort",
+            5,
+            "SHORT fragments, and the gaps of their sort",
+        ),
+        ("scene::shade", 2, "peelnet_scene::MAX_LIGHTS"),
+    ];
+
+    #[test]
+    fn every_loop_has_a_bound() {
+        let is_loop = |word: &&str| ["for", "while", "loop"].contains(word);
+        let code = |line: &'static str| line.split("//").next().unwrap_or_default();
+        let words =
+            |line: &'static str| code(line).split(|c: char| !c.is_ascii_alphanumeric() && c != '_');
+        let of_text = |text: &'static str| text.lines().flat_map(words).filter(is_loop).count();
+        let all = SOURCES.iter().map(|(path, text)| (*path, of_text(text)));
+        let found: BTreeSet<_> = all.filter(|(_, loops)| *loops > 0).collect();
+        let listed = LOOPS
+            .iter()
+            .map(|(path, loops, _)| (*path, *loops))
+            .collect();
+        let difference: Vec<_> = found.symmetric_difference(&listed).collect();
+        assert!(difference.is_empty(), "{difference:?}");
+        assert!(LOOPS.iter().all(|(.., bound)| !bound.is_empty()));
+    }
+
+    #[test]
+    fn a_missing_import_is_named() {
+        let e = link("methods::deep_thesis::gather", &[], &[]).expect_err("no learned module");
+        assert!(e.to_string().contains("learned"), "{e}");
+    }
+
+    #[test]
+    fn features_switch_bindings_off() {
+        let plain = link("peel::count", &[], &[]).expect("links");
+        assert!(!plain.contains("opaque_depth"));
+        let opaque = link("peel::count", &["opaque"], &[]).expect("links");
+        assert!(opaque.contains("opaque_depth"));
+    }
+}
