@@ -1,8 +1,8 @@
 // Composites a piece of every run that has another piece behind it. `step` counts pieces: one dispatch for each.
 // Variants: long abuffer | long abuffer tinted | long surfaces | long layers | long layers increasing | long layers printed | long layers increasing printed
 @if(abuffer) import package::methods::abuffer::composite::{begun, carry_on, resumed, with_fragment};
-@if(layers) import package::methods::layers::composite::{begun, carry_on, resumed, with_fragment};
-@if(surfaces) import package::methods::surfaces::composite::{begun, carry_on, resumed, with_fragment};
+@if(layers) import package::passes::layers::composite::{begun, carry_on, resumed, with_fragment};
+@if(surfaces) import package::passes::surfaces::composite::{begun, carry_on, resumed, with_fragment};
 import package::peel::runs::{PIECE, run_at, slot_at, tile};
 
 @group(0) @binding(6) var<uniform> step: vec4u;

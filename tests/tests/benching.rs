@@ -8,9 +8,9 @@ use peelnet_bench::{
 };
 use peelnet_core::{
     fragment::{Fragment, worked_example},
-    methods::{mlab, over},
+    methods::over,
 };
-use peelnet_render::MethodSpec;
+use peelnet_render::{MethodSpec, methods::mlab};
 use peelnet_scene::Scene;
 use peelnet_tests::{gpu, specs, walls};
 use std::sync::atomic::AtomicBool;
@@ -48,8 +48,8 @@ fn a_method_on_the_cpu_has_an_error_and_no_time() {
     let (rows, _) = rows(&scene, &methods, &[]);
     let exact = over::composite_f64(&drawn, c0);
     for (nodes, row) in [(1, &rows[1]), (4, &rows[2])] {
-        let twin = mlab::composite(&drawn, c0, nodes);
-        let squares = (0..3).map(|k| (f64::from(twin[k]) - exact[k]).powi(2));
+        let reference = mlab::reference::composite(&drawn, c0, nodes);
+        let squares = (0..3).map(|k| (f64::from(reference[k]) - exact[k]).powi(2));
         let want = squares.sum::<f64>() / 3.0;
         assert_eq!(row.method, format!("mlab-{nodes}"));
         // Twice the error of an exact image, 1e-5, times the error itself.

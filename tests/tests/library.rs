@@ -142,7 +142,7 @@ fn every_method_draws_over_what_a_target_holds() {
     let renderer = Renderer::new(&gpu, &scene).unwrap();
     let camera = scene.views[0];
     for (mut method, spec) in methods(&renderer, size) {
-        let straight = spec.promises().straight;
+        let straight = spec.guarantees().straight;
         let image = if straight {
             // The target below has 32 bits.
             let full = format!("{spec}:targets=f32");

@@ -31,7 +31,7 @@ fn a_silhouette_in_smoke_is_exact() {
         let t = (1.0 - ALPHA).powi(inside);
         let want = [0, 1, 2].map(|k| smoke[k] * (1.0 - t) + SILHOUETTE[k] * t);
         // Random samples hit their mean only in the mean.
-        let is_judged = |s: &MethodSpec| s.promises().normalised && !s.promises().noisy;
+        let is_judged = |s: &MethodSpec| s.guarantees().normalised && !s.guarantees().noisy;
         for spec in representatives().into_iter().filter(is_judged) {
             let image = draw(&gpu, &scene, &spec, [4, 4]);
             // Of one colour, half floats round sums of absorbance and of colour only: no root is magnified.
@@ -150,7 +150,7 @@ fn a_lower_resolution_keeps_what_does_not_vary() {
     let gpu = gpu();
     let walls = walls(&worked_example(), [0.25, 0.5, 0.75]);
     // Samples differ from pixel to pixel by design.
-    let is_even = |s: &MethodSpec| !s.promises().noisy;
+    let is_even = |s: &MethodSpec| !s.guarantees().noisy;
     for spec in representatives().into_iter().filter(is_even) {
         let full = draw(&gpu, &walls, &spec, [7, 5]);
         for scale in ["0.5", "0.3", "1"] {

@@ -12,14 +12,16 @@ use peelnet_core::{
         moments::{Moments, Settings},
         over,
         slabs::{self, Between, Design},
-        wavelet,
     },
     random::Random,
     statistics::{Statistics, SumPrecision},
     tolerance,
     weights::Weight,
 };
-use peelnet_render::{Flaw, MethodSpec, Property, methods::Pixel};
+use peelnet_render::{
+    KnownFailure, MethodSpec, Property,
+    methods::{Pixel, wavelet},
+};
 use proptest::prelude::*;
 use std::sync::LazyLock;
 
@@ -100,14 +102,21 @@ fn guess(between: &Between) -> f64 {
 /// Every point of every method's curve that needs no network, with its name, and whether its weights are declared to vanish far from the
 /// camera.
 static POINTS: LazyLock<Vec<(String, bool, MethodSpec)>> = LazyLock::new(|| {
-    let far = |f: &Flaw| f.property == Property::Hull && f.cases().any(|case| case == "far");
+    let far =
+        |f: &KnownFailure| f.property == Property::Hull && f.cases().any(|case| case == "far");
     // Twins know no precision of targets.
     let is_one = |s: &MethodSpec| {
-        let is_sound = s.promises().normalised && !s.promises().rounds_fragments;
+        let is_sound = s.guarantees().normalised && !s.guarantees().rounds_fragments;
         is_sound && !s.needs_model() && s.targets().is_none()
     };
     let all = MethodSpec::compared().into_iter().filter(is_one);
-    let all = all.map(|s| (s.to_string(), s.method().flaws.iter().any(far), s));
+    let all = all.map(|s| {
+        (
+            s.to_string(),
+            s.method().expectations.known_failures.iter().any(far),
+            s,
+        )
+    });
     all.collect()
 });
 
@@ -122,7 +131,8 @@ fn normalised(fragments: &[Fragment], background: [f32; 3]) -> Vec<(&str, [f32; 
         model: None,
     };
     let twins = POINTS.iter();
-    let twins = twins.filter_map(|(name, vanishes, s)| Some((&**name, s.twin(&pixel)?, *vanishes)));
+    let twins =
+        twins.filter_map(|(name, vanishes, s)| Some((&**name, s.reference(&pixel)?, *vanishes)));
     let ends = [("anchored", false), ("anchored, separate ends", true)];
     let anchored = ends.map(|(name, ends)| {
         let color = anchored::composite(fragments, background, &pixel.warp, ends, share);
@@ -211,7 +221,7 @@ proptest! {
         let mut all = [Settings::FOUR, Settings::SIX, Settings::EIGHT].to_vec();
         all.extend(trigonometric);
         let mut all: Vec<_> = all.into_iter().map(|s| (s, Moments::new(s.basis))).collect();
-        let mut haar = wavelet::Averages::of_rank(3);
+        let mut haar = wavelet::reference::Averages::of_rank(3);
         for f in &f {
             let (b, z) = (absorbance(f.alpha), warp.apply(f.depth.into()));
             all.iter_mut().for_each(|(_, moments)| moments.add(b, z));

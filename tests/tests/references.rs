@@ -33,7 +33,7 @@ const FULL: f32 = 1e-4;
 /// The largest difference between a pixel of `n` layers and the reference, where moments may err by `moments`; `None` where the error of 16-bit statistics has no simple
 /// bound, because roots of them are taken.
 fn bound(spec: &MethodSpec, n: usize, moments: f32) -> Option<f32> {
-    let promises = spec.promises();
+    let promises = spec.guarantees();
     match (promises.root, promises.statistics, promises.sums) {
         _ if promises.exact => Some(peelnet_core::tolerance::EXACT as f32),
         (Some(_), Precision::Half, _) => None,
@@ -162,7 +162,7 @@ impl Frame {
         let frame = renderer.image(&mut prepared, view).unwrap();
         let mut problems = Vec::new();
         // A peel that is capped counts what it leaves out.
-        if (spec.promises().exact || !spec.method().is_exact()) && frame.stats.lost > 0 {
+        if (spec.guarantees().exact || !spec.method().is_exact()) && frame.stats.lost > 0 {
             problems.push(format!("{spec}: {} fragments are lost", frame.stats.lost));
         }
         for (fragments, region) in self.lists.iter().zip(0..) {
@@ -174,7 +174,7 @@ impl Frame {
             };
             for [x, y] in COMPARED {
                 let position = [x + region * REGION[0], y];
-                let want = spec.twin(&Pixel {
+                let want = spec.reference(&Pixel {
                     fragments,
                     background: self.scene.background,
                     warp: renderer.depth_warp(view),
@@ -238,7 +238,7 @@ fn every_method_has_a_reference() {
         let has_boxes = |s: &MethodSpec| s.to_string().contains("range=boxes");
         for spec in own().filter(|s| !s.is_scaled() && !has_boxes(s)) {
             let model = network_of(spec).map(|(_, model)| model);
-            let color = spec.twin(&Pixel {
+            let color = spec.reference(&Pixel {
                 fragments: &worked_example(),
                 background: [0.0; 3],
                 warp: peelnet_core::absorbance::DepthWarp::new(1.0, 8.0),

@@ -100,7 +100,7 @@ fn a_pixel_is_the_mean_of_its_samples() {
                     ..Fragment::new(depth, alpha, color)
                 };
                 let fragments: Vec<Fragment> = inside.map(fragment).collect();
-                let color = spec.twin(&Pixel {
+                let color = spec.reference(&Pixel {
                     fragments: &fragments,
                     background: BACKGROUND,
                     warp,
@@ -114,7 +114,7 @@ fn a_pixel_is_the_mean_of_its_samples() {
             Some(mean)
         };
         // Random numbers of a pixel's position are other ones in every row, and twins know nothing of the neighbours, which hold other surfaces.
-        let promises = spec.promises();
+        let promises = spec.guarantees();
         let alone = promises.per_pixel && !promises.noisy;
         let Some(want) = mean().filter(|_| alone) else {
             continue;

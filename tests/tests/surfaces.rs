@@ -187,8 +187,8 @@ fn stained_glass_tints_what_is_behind_it() {
         let one = scene("pane", c0, vec![wall(3.0, pane(first, alpha))]);
         let want = through(c0, first, alpha);
         for spec in MethodSpec::all() {
-            if spec.promises().tinted {
-                let exact = spec.promises().exact;
+            if spec.guarantees().tinted {
+                let exact = spec.guarantees().exact;
                 let bound = if exact { 1e-6 } else { 6.0 * HALF };
                 assert_all(&draw(&gpu, &one, &spec, [4, 3]), want, bound, &spec);
             } else {
@@ -320,7 +320,7 @@ fn emission_is_exact_on_a_single_surface() {
                 false => spec,
             };
             // Of few samples none may see a faint surface; a coverage of 0.01 in half floats errs by a twentieth.
-            let promises = spec.promises();
+            let promises = spec.guarantees();
             if faint && (promises.noisy || promises.sums == Precision::Half) {
                 continue;
             }

@@ -1,6 +1,7 @@
-//! `avboit` over several blocks of pixels: what its CPU twin, of a pixel among its like, does not know.
+//! `avboit` over several blocks of pixels: what its CPU reference, of a pixel among its like, does not know.
 
-use peelnet_core::{absorbance::absorbance, methods::avboit::UNIT};
+use peelnet_core::absorbance::absorbance;
+use peelnet_render::methods::avboit::reference::UNIT;
 use peelnet_scene::Material;
 use peelnet_tests::{draw, gpu, object, rectangle, scene, wall};
 

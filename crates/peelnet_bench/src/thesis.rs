@@ -48,7 +48,7 @@ pub fn ratio(
 pub fn best_published<'a>(rows: &Rows<'a>) -> Option<&'a str> {
     let has_weight = |m: &&str| {
         let spec = m.parse::<MethodSpec>();
-        spec.is_ok_and(|spec| spec.promises().own_weight)
+        spec.is_ok_and(|spec| spec.guarantees().own_weight)
     };
     let errors = rows.methods().into_iter().filter(has_weight);
     let errors = errors.filter_map(|m| {

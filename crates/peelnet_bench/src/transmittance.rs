@@ -107,7 +107,7 @@ impl<'a> Peeled<'a> {
             // Triangles are drawn by their numbers.
             fragments.sort_by_key(|f| f.triangle);
             let width = image.width as usize;
-            let reference = method.twin(&Pixel {
+            let reference = method.reference(&Pixel {
                 fragments: &fragments,
                 background: [0.0; 3],
                 warp,

@@ -18,7 +18,7 @@ use crate::gpu::{
 use crate::{
     RenderError,
     image::Image,
-    methods::{FrameStats, plan::Target},
+    passes::{Target, compositor::FrameStats},
 };
 use peelnet_core::files::counted;
 use web_time::Instant;
@@ -119,7 +119,7 @@ impl Canvas {
         let none = wgpu::TextureUsages::empty();
         let view = gpu.texture("canvas", FORMAT, size, 1, none)?;
         let mean = if samples > 1 {
-            let (shader, entries) = ("methods::samples::average", [Bind::Texture(&view)]);
+            let (shader, entries) = ("passes::samples::average", [Bind::Texture(&view)]);
             let mean = Target::half("mean", 4, Blend::Add);
             let target = [Some(mean.state())];
             let pass = FullscreenPass::new(gpu, shader, &[], &[], &entries, &target, 1)?;

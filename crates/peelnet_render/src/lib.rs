@@ -24,12 +24,12 @@
 //! # }
 //! ```
 
-pub mod flaw;
 mod frame;
 pub mod geometry;
 pub mod gpu;
 mod image;
 pub mod methods;
+pub mod passes;
 mod pixel;
 mod renderer;
 pub mod shaders;
@@ -37,11 +37,11 @@ mod target;
 mod whole;
 
 pub use crate::geometry::{Order, PixelSample, RenderError, Submission, shader_bytes};
-pub use flaw::{Flaw, Property};
 pub use frame::{Frame, Profile, milliseconds, of_method};
 pub use image::{Image, ImageFormat};
-pub use methods::{
-    FrameStats, METHODS, Method, MethodSpec, role,
+pub use methods::{KnownFailure, METHODS, Method, MethodSpec, Property, role};
+pub use passes::{
+    compositor::FrameStats,
     views::{LayerFormula, LayerView},
 };
 pub use pixel::PixelFragment;

@@ -10,10 +10,9 @@ use crate::gpu::{
 use crate::{
     RenderError,
     frame::Canvas,
-    methods::{
-        self, METHODS,
+    methods::{self, METHODS, spec::MethodSpec},
+    passes::{
         compositor::{Build, Compositor, DrawContext, Fit, FrameStats},
-        spec::MethodSpec,
         views::{LayerView, Shows},
     },
     target::{FrameStatus, LearnedWeight, MethodOptions, Target},
@@ -175,7 +174,7 @@ impl Renderer {
         self.exact(Shows::Layers(view), MethodOptions::sized(size))
     }
 
-    /// Makes an image ready that tells, instead of a colour, which transparent surfaces a pixel shows: see [`crate::methods::views`].
+    /// Makes an image ready that tells, instead of a colour, which transparent surfaces a pixel shows: see [`crate::passes::views`].
     ///
     /// # Errors
     /// A frame beyond the adapter's limits.

@@ -1,7 +1,7 @@
 //! What a method is made ready with, what it draws onto, and what becomes of the frame.
 
 use crate::gpu::wgpu;
-use crate::methods::views::Shows;
+use crate::passes::views::Shows;
 use peelnet_model::Recipe;
 #[cfg(doc)]
 use peelnet_scene::Camera;

@@ -9,7 +9,7 @@ use crate::{
     RenderError,
     frame::{Canvas, Frame, Profile},
     image::Image,
-    methods::compositor::Fit,
+    passes::compositor::Fit,
     renderer::{Prepared, Renderer},
     target::Target,
 };

@@ -213,7 +213,7 @@ impl View {
                 position: [0; 2],
                 model,
             };
-            method.twin(&pixel).unwrap_or_default()
+            method.reference(&pixel).unwrap_or_default()
         })
     }
 }

@@ -1,6 +1,6 @@
 //! Hard cases: every method drawn where transparency is known to break, and what must hold of it there.
 //!
-//! [`CASES`] makes the scenes, [`Property`] says what must hold, with its limit, and each method's declaration what is known not to ([`Flaw`]).
+//! [`CASES`] makes the scenes, [`Property`] says what must hold, with its limit, and each method's declaration what is known not to ([`KnownFailure`]).
 //! [`stress`] draws a case with a list of methods and gives a [`Row`] for each method and property.
 //!
 //! ```text
@@ -31,7 +31,7 @@ use peelnet_core::files::counted;
 use peelnet_export::ExportError;
 use peelnet_model::Model;
 use peelnet_render::gpu::{Gpu, wgpu::AdapterInfo};
-use peelnet_render::{Flaw, Image, LearnedWeight, MethodOptions, MethodSpec, Submission};
+use peelnet_render::{Image, KnownFailure, LearnedWeight, MethodOptions, MethodSpec, Submission};
 use peelnet_scene::Scene;
 use properties::Findings;
 use std::path::Path;
@@ -60,7 +60,7 @@ impl Case {
     pub fn judges(&self, method: &MethodSpec) -> bool {
         match self.work {
             Work::Frames(_) => true,
-            Work::Deep(_) => method.promises().exact && !method.promises().peels,
+            Work::Deep(_) => method.guarantees().exact && !method.guarantees().peels,
             Work::Network(_) => method.needs_model(),
         }
     }
@@ -173,7 +173,7 @@ fn rows(
     let all = findings.all.iter();
     all.map(|(&(i, property), finding)| {
         let method = &subjects[i].method;
-        let flaw = Flaw::declared(method, case.id, property, adapter);
+        let flaw = KnownFailure::find(method, case.id, property, adapter);
         let (result, reason) = match (finding.holds(), flaw) {
             (true, None) => (Outcome::Pass, None),
             (true, Some(flaw)) if strict => (
@@ -288,14 +288,14 @@ impl<'a> Stand<'a> {
         findings: &mut Findings,
     ) -> Result<(), EvalError> {
         let limit = properties::transmittance_limit(case.id, subject);
-        let is_estimate = subject.method.method().transmittances.is_some();
+        let is_estimate = subject.method.method().expectations.estimate.is_some();
         let (Some(limit), true, Some((scene, shown))) = (limit, is_estimate, self.trial.probe())
         else {
             return Ok(());
         };
         let stage = Stage::new(self.gpu, &scene)?;
         let mut options = self.options(subject);
-        options.shows = peelnet_render::methods::views::Shows::Sums;
+        options.shows = peelnet_render::passes::views::Shows::Sums;
         let sums = stage.draw(&subject.method, options, &scene.views[0])?;
         for (content, sum) in self.truth.pixels.iter().zip(&sums.pixels) {
             let Content::Kind(k) = *content else {
@@ -325,7 +325,7 @@ mod tests {
         let mut run = Subject::all_methods();
         run.extend(peelnet_render::MethodSpec::curve());
         for method in peelnet_render::METHODS {
-            for flaw in method.flaws {
+            for flaw in method.expectations.known_failures {
                 let at = format!("{} of {}", flaw.property, method.name);
                 for case in flaw.cases() {
                     assert!(CASES.iter().any(|c| c.id == case), "{at}: {case}");

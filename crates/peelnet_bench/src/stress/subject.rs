@@ -3,7 +3,7 @@
 use peelnet_model::Model;
 use peelnet_render::{
     LearnedWeight, METHODS, MethodSpec,
-    methods::{Precision, Promises},
+    methods::{Guarantees, Precision},
 };
 
 /// A method with the network it draws with.
@@ -12,7 +12,7 @@ pub struct Subject {
     pub method: MethodSpec,
     /// The network's text and itself, for learned methods.
     pub learned: Option<(LearnedWeight, Model)>,
-    pub(super) promises: Promises,
+    pub(super) promises: Guarantees,
 }
 
 /// Parameters that say how a method keeps what it knows.
@@ -21,7 +21,7 @@ const KEPT: [&str; 2] = ["colors=", "cell="];
 impl Subject {
     pub fn new(method: MethodSpec, learned: Option<(LearnedWeight, Model)>) -> Self {
         Self {
-            promises: method.promises(),
+            promises: method.guarantees(),
             method,
             learned,
         }

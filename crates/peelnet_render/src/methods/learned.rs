@@ -38,7 +38,7 @@ pub(super) fn learned_transmittances(
     warp: &DepthWarp,
     model: Option<&Model>,
 ) -> Option<Vec<f64>> {
-    let precision = match spec.promises().statistics {
+    let precision = match spec.guarantees().statistics {
         Precision::Half => SumPrecision::Half,
         Precision::Full => SumPrecision::Exact,
     };

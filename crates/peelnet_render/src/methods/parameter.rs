@@ -82,7 +82,7 @@ impl Parameter {
         }
     }
 
-    pub(super) const fn positive(
+    pub(crate) const fn positive(
         name: &'static str,
         about: &'static str,
         default: f64,
@@ -96,7 +96,7 @@ impl Parameter {
         Self::new(name, about, values)
     }
 
-    pub(super) const fn share(name: &'static str, about: &'static str, default: f64) -> Self {
+    pub(crate) const fn share(name: &'static str, about: &'static str, default: f64) -> Self {
         let values = Values::Number {
             default,
             above_zero: false,
@@ -106,7 +106,7 @@ impl Parameter {
     }
 
     /// A whole number; without a default it may be left out.
-    pub(super) const fn whole(
+    pub(crate) const fn whole(
         name: &'static str,
         about: &'static str,
         default: Option<u64>,
@@ -121,7 +121,7 @@ impl Parameter {
     }
 
     /// One of some words, the default first.
-    pub(super) const fn words(
+    pub(crate) const fn words(
         name: &'static str,
         about: &'static str,
         words: &'static [&'static str],
@@ -129,7 +129,7 @@ impl Parameter {
         Self::new(name, about, Values::Words(words))
     }
 
-    pub(super) const fn targets(about: &'static str) -> Self {
+    pub(crate) const fn targets(about: &'static str) -> Self {
         Self::new("targets", about, Values::Precision)
     }
 

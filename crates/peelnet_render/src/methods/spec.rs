@@ -2,7 +2,8 @@
 
 use super::{
     METHODS,
-    method::{Method, Pixel, Promises},
+    expectations::{Guarantees, Pixel},
+    method::Method,
     parameter::{Precision, SCALE},
 };
 use crate::RenderError;
@@ -97,11 +98,11 @@ impl MethodSpec {
         SCALE.number(self) < 1.0
     }
 
-    /// What the method promises with these parameters.
-    pub fn promises(&self) -> Promises {
-        let own = (self.method().promises)(self);
+    /// What the method guarantees with these parameters.
+    pub fn guarantees(&self) -> Guarantees {
+        let own = (self.method().expectations.guarantees)(self);
         let scaled = self.is_scaled();
-        Promises {
+        Guarantees {
             exact: own.exact && !scaled,
             per_pixel: own.per_pixel && !scaled,
             normalised: own.normalised && !scaled,
@@ -112,15 +113,15 @@ impl MethodSpec {
         }
     }
 
-    /// The colour that a pixel must have, by the method's CPU twin; `None` where it has none: at a lower resolution, and for a
-    /// learned method without a model.
-    pub fn twin(&self, pixel: &Pixel<'_>) -> Option<[f32; 3]> {
-        let twin = self.method().twin.filter(|_| !self.is_scaled())?;
-        twin(self, pixel)
+    /// The colour that a pixel must have, by the method's CPU reference; `None` where it has none: at a lower resolution, and
+    /// for a learned method without a model.
+    pub fn reference(&self, pixel: &Pixel<'_>) -> Option<[f32; 3]> {
+        let reference = self.method().expectations.reference;
+        reference.filter(|_| !self.is_scaled())?(self, pixel)
     }
 
     /// The transmittance in front of each of a pixel's fragments that the method's weights stand for, in 64 bits by the CPU
-    /// twin. Fragments are (linear depth, α), nearest first. `None` where the weights are no transmittance, at a lower
+    /// reference. Fragments are (linear depth, α), nearest first. `None` where the weights are no transmittance, at a lower
     /// resolution, and for a learned method without a model.
     pub fn transmittances(
         &self,
@@ -128,7 +129,8 @@ impl MethodSpec {
         warp: &DepthWarp,
         model: Option<&Model>,
     ) -> Option<Vec<f64>> {
-        let estimate = self.method().transmittances.filter(|_| !self.is_scaled())?;
+        let estimate = self.method().expectations.estimate;
+        let estimate = estimate.filter(|_| !self.is_scaled())?;
         estimate(self, fragments, warp, model)
     }
 
@@ -300,7 +302,7 @@ mod tests {
         }
     }
 
-    /// Names are unique, defaults are allowed, and promises and flaws belong to what a name resolves to, not to how it is spelled.
+    /// Names are unique, defaults are allowed, and guarantees and known failures belong to what a name resolves to, not to how it is spelled.
     #[test]
     fn a_bare_name_and_its_explicit_spelling_declare_the_same() {
         let mut names: Vec<_> = METHODS.iter().map(|m| m.name).collect();
@@ -320,12 +322,12 @@ mod tests {
                 let words = Precision::WORDS.into_iter();
                 let precisions = words.map(|word| bare.with("targets", word).unwrap());
                 // One or none of them is the default.
-                spelled.extend(precisions.filter(|s| s.promises() == bare.promises()));
+                spelled.extend(precisions.filter(|s| s.guarantees() == bare.guarantees()));
             }
             for spelled in spelled {
-                assert_eq!(spelled.promises(), bare.promises(), "{spelled}");
-                for flaw in method.flaws {
-                    let (at, when) = (format!("{spelled}: {}", flaw.reason), flaw.when);
+                assert_eq!(spelled.guarantees(), bare.guarantees(), "{spelled}");
+                for failure in method.expectations.known_failures {
+                    let (at, when) = (format!("{spelled}: {}", failure.reason), failure.when);
                     assert_eq!(when(&spelled), when(&bare), "{at}");
                 }
             }

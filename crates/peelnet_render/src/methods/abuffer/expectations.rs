@@ -1,0 +1,13 @@
+//! What tests and `peelnet stress` expect of the methods in this folder.
+
+use crate::methods::expected::*;
+use peelnet_core::methods::over;
+
+pub(super) const METHOD: Expectations = Expectations {
+    guarantees: |_| Guarantees {
+        tinted: true,
+        ..Guarantees::EXACT
+    },
+    reference: Some(|_, p| Some(over::composite(p.fragments, p.background))),
+    ..Expectations::DEFAULT
+};

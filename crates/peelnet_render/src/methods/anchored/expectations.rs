@@ -1,0 +1,74 @@
+//! What tests and `peelnet stress` expect of the methods in this folder.
+
+use crate::methods::{expected::*, learned::learned_transmittances};
+use peelnet_core::methods::anchored;
+use peelnet_model::{Inputs, Output};
+
+pub(super) const ANCHORED: Expectations = Expectations {
+    guarantees: |_| Guarantees {
+        root: Some(2),
+        close_estimate: true,
+        ..Guarantees::TINTED
+    },
+    reference: Some(|_, p| {
+        let model = p.model?;
+        let separate_ends = model.meta.output == Output::AnchoredShareSeparateEnds;
+        let Inputs::Rest(features) = model.meta.recipe.inputs else {
+            return None;
+        };
+        let (fragments, c0) = (p.fragments, p.background);
+        let share = |rest: &_| model.answer(features, rest);
+        Some(anchored::composite(
+            fragments,
+            c0,
+            &p.warp,
+            separate_ends,
+            share,
+        ))
+    }),
+    estimate: Some(learned_transmittances),
+    ..Expectations::DEFAULT
+};
+
+/// Crossing and many layers, where what is left of a sum without the fragment's own share and the ends is a small part of it.
+const UNSETTLED: KnownFailure =
+    KnownFailure::unsettled(Property::Order, "high-alpha intersecting moving-camera");
+
+const BEHIND_COINCIDENT: KnownFailure = KnownFailure::new(
+    Property::Transmittance,
+    "coplanar",
+    "the network's own error at a layer between sixteen coincident ones and the end, up to 0.010; where the sixteen stand before one, it is exact",
+);
+
+/// Of no matter to what is drawn: exported texts have 32 bits.
+const MAGNIFIED: KnownFailure = KnownFailure::new(
+    Property::Half,
+    "half-float",
+    "weights of the hidden layers up to 10 magnify the roundings of half floats, which the limit counts in the last layer alone",
+);
+
+const ROUNDED_OTHERWISE: KnownFailure = KnownFailure::new(
+    Property::Scale,
+    "high-alpha",
+    "depths are rounded otherwise, and a sum in half floats falls on the other side of a rounding (docs/learned-weights.md)",
+)
+.when(half_sums)
+.seen_on_llvmpipe();
+
+pub(super) const SMALL: Expectations = Expectations {
+    known_failures: &[
+        KnownFailure::swallowed("deep"),
+        ROUNDED_OTHERWISE,
+        UNSETTLED,
+        KnownFailure::unsettled(Property::Order, "near-overflow deep"),
+        KnownFailure::reordered("emissive"),
+        BEHIND_COINCIDENT,
+        MAGNIFIED,
+    ],
+    ..ANCHORED
+};
+
+pub(super) const MEDIUM: Expectations = Expectations {
+    known_failures: &[ROUNDED_OTHERWISE, UNSETTLED, BEHIND_COINCIDENT],
+    ..ANCHORED
+};

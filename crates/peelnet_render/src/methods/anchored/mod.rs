@@ -1,0 +1,58 @@
+//! `deep-anchored-small`, `deep-anchored-medium`: a learned fraction of the others' absorbance, anchored at both ends, drawn with the
+//! exported text itself.
+
+mod expectations;
+
+use crate::methods::prelude::*;
+use peelnet_core::statistics::SumPrecision;
+use peelnet_model::Output;
+
+const fn anchored(name: &'static str, about: &'static str) -> Method {
+    Method {
+        parameters: &[TARGETS],
+        learned: true,
+        expectations: expectations::ANCHORED,
+        ..Method::new(name, about, passes)
+    }
+}
+
+pub(super) const SMALL: Method = Method {
+    curve: &["", ":targets=f32"],
+    expectations: expectations::SMALL,
+    ..anchored(
+        "deep-anchored-small",
+        "a learned share of what lies between the pixel's ends, 5-8-1",
+    )
+};
+
+pub(super) const MEDIUM: Method = Method {
+    curve: &["", ":targets=f32", ":scale=0.5"],
+    expectations: expectations::MEDIUM,
+    ..anchored("deep-anchored-medium", "the same with exact ends, 5-12-1")
+};
+
+fn passes(p: &mut Passes<'_>) -> Result<(), RenderError> {
+    let recipe = p.b.learned_weight()?.recipe;
+    let ends = (recipe.output == Output::AnchoredShareSeparateEnds).then_some(ENDS);
+    let feature = ends.map(|_| "separate_ends");
+    let statistic = |label, blend| Target {
+        full: recipe.sums == SumPrecision::Exact,
+        ..Target::half(label, 4, blend)
+    };
+    let sums = p.target(SUMS)?;
+    let moments = p.target(statistic("moments", Blend::Add))?;
+    let extent = p.target(statistic("extent", Blend::MaxAdd))?;
+    let ends = p.targets(ends)?;
+    p.geometry("methods::anchored::statistics")
+        .features(feature)
+        .writes([moments, extent]);
+    p.geometry("methods::anchored::gather")
+        .features(feature)
+        .reads([moments, extent])
+        .writes([sums])
+        .writes(ends.iter().copied());
+    p.resolve("methods::anchored::resolve", [sums, moments])
+        .features(feature)
+        .reads(ends);
+    p.tint()
+}

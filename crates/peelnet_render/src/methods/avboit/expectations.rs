@@ -1,0 +1,19 @@
+//! What tests and `peelnet stress` expect of the methods in this folder.
+
+use super::{reference, slices};
+use crate::methods::expected::*;
+use peelnet_core::{fragment::points, methods::composite};
+
+pub(super) const METHOD: Expectations = Expectations {
+    guarantees: |_| Guarantees {
+        per_pixel: false,
+        ..Guarantees::NORMALISED
+    },
+    // Of a pixel whose neighbours are like it: `per_pixel` is not promised.
+    reference: Some(|s, p| {
+        let slices = slices(s) as usize;
+        let t = reference::transmittances(&points(p.fragments), &p.warp, slices);
+        Some(composite(p.fragments, p.background, &t))
+    }),
+    ..Expectations::DEFAULT
+};

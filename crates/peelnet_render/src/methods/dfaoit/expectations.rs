@@ -1,0 +1,33 @@
+//! What tests and `peelnet stress` expect of the methods in this folder.
+
+use crate::methods::{depth_peel::expectations::COINCIDENT, expected::*};
+use peelnet_core::methods::dfaoit;
+use peelnet_model::Inputs;
+
+pub(super) const METHOD: Expectations = Expectations {
+    // The colour is the network's, not a mean.
+    guarantees: |_| Guarantees {
+        normalised: false,
+        ..Guarantees::NORMALISED
+    },
+    reference: Some(|_, p| {
+        let model = p.model?;
+        let Inputs::Layers(features) = model.meta.recipe.inputs else {
+            return None;
+        };
+        let network = |known: &dfaoit::Layers| {
+            let color = model.answers(features, known);
+            [0, 1, 2].map(|k| color[k] as f32)
+        };
+        Some(dfaoit::composite(p.fragments, p.background, network))
+    }),
+    known_failures: &[
+        COINCIDENT,
+        KnownFailure::new(
+            Property::Opaque,
+            "alpha-near-one",
+            "the network's own error: it predicts the nearest layers' colour with that of the others (Tsopouridis et al. 2024)",
+        ),
+    ],
+    ..Expectations::DEFAULT
+};

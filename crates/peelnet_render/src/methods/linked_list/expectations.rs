@@ -1,0 +1,29 @@
+//! What tests and `peelnet stress` expect of the methods in this folder.
+
+use crate::methods::{expected::*, stored_colors};
+use peelnet_core::methods::over;
+
+pub(super) const METHOD: Expectations = Expectations {
+    guarantees: |s| Guarantees {
+        tinted: true,
+        ..stored_colors::guarantees(s, Guarantees::EXACT)
+    },
+    known_failures: &[
+        stored_colors::in_bytes(
+            Property::Background,
+            "alpha-tiny alpha-zero coplanar emissive far grazing intersecting isolated moving-camera opaque-mix \
+             thin-slab two-layers wide-range",
+        ),
+        stored_colors::in_bytes(
+            Property::Hull,
+            "alpha-tiny coplanar deep emissive grazing intersecting moving-camera near-overflow",
+        ),
+        stored_colors::in_bytes(Property::Single, "emissive grazing"),
+    ],
+    reference: Some(|s, p| {
+        let colors = stored_colors::colors(s);
+        let kept: Vec<_> = p.fragments.iter().map(|f| colors.kept(f)).collect();
+        Some(over::composite(&kept, p.background))
+    }),
+    ..Expectations::DEFAULT
+};

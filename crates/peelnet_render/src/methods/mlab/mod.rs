@@ -1,0 +1,23 @@
+//! `mlab-K`: multi-layer alpha blending (Salvi & Vaidyanathan 2014), as its CPU reference alone.
+
+mod expectations;
+pub mod reference;
+
+use crate::methods::prelude::*;
+
+const NO_ORDER: &str = "it needs ordered access to pixels, which WebGPU lacks";
+
+pub(super) const METHOD: Method = Method {
+    numbered: Numbered::range(1, 64),
+    cpu_only: Some(NO_ORDER),
+    curve: &["-4", "-2", "-8"],
+    expectations: expectations::METHOD,
+    ..Method::new(
+        "mlab",
+        "Salvi & Vaidyanathan 2014, K nodes merged in the order of drawing; bench computes its error on the CPU",
+        |p| {
+            let why = format!("cannot be drawn: {NO_ORDER}; bench measures its error");
+            Err(RenderError::Refused(format!("{} {why}", p.b.spec)))
+        },
+    )
+};

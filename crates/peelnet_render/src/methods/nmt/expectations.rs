@@ -1,0 +1,42 @@
+//! What tests and `peelnet stress` expect of the methods in this folder.
+
+use crate::methods::{expected::*, learned::learned_transmittances};
+use peelnet_core::methods::deep;
+
+pub(super) const METHOD: Expectations = Expectations {
+    guarantees: |_| Guarantees {
+        sums: Precision::Full,
+        statistics: Precision::Full,
+        ..Guarantees::NORMALISED
+    },
+    reference: Some(|s, p| {
+        let points: Vec<(f32, f32)> = p.fragments.iter().map(|f| (f.depth, f.alpha)).collect();
+        let mut weights = s.transmittances(&points, &p.warp, p.model)?.into_iter();
+        // One weight a fragment.
+        let next = |_: &_| weights.next().unwrap_or_default() as f32;
+        Some(deep::composite(p.fragments, p.background, next))
+    }),
+    estimate: Some(learned_transmittances),
+    known_failures: &[
+        KnownFailure::swallowed("deep near-overflow"),
+        KnownFailure::unsettled(Property::Order, "deep near-overflow"),
+        KnownFailure::unsettled(Property::Transmittance, "isolated"),
+        KnownFailure::new(
+            Property::Opaque,
+            "alpha-near-one",
+            "the network's own error; it reads the same moments (Tsopouridis et al. 2024)",
+        ),
+        KnownFailure::new(
+            Property::Scale,
+            "thin-slab",
+            "it divides depths by a pixel's own range of them, here a few roundings (Tsopouridis et al. 2024)",
+        )
+        .when(|spec| !half_sums(spec))
+        .seen_on_llvmpipe(),
+        KnownFailure::new(
+            Property::Transmittance,
+            "two-layers coplanar",
+            "the network's own error (Tsopouridis et al. 2024)",
+        ),
+    ],
+};

@@ -1,0 +1,68 @@
+//! `painter-object` and `painter-triangle`: sort on the CPU, blend in hardware: what engines do by default. Not exact for
+//! surfaces that intersect, or overlap in a cycle.
+
+mod expectations;
+
+use crate::geometry::Order;
+use crate::methods::prelude::*;
+use crate::passes::Resource;
+
+const SORT: Parameter = Parameter::words(
+    "sort",
+    "on (default) or off: hardware blending in the scene's order",
+    &["on", "off"],
+);
+
+fn sorts(spec: &MethodSpec) -> bool {
+    SORT.word(spec) == "on"
+}
+
+fn order(spec: &MethodSpec) -> Order {
+    match spec.name() {
+        "painter-triangle" => Order::Triangles,
+        _ if sorts(spec) => Order::Objects,
+        _ => Order::Scene,
+    }
+}
+
+const fn painter(name: &'static str, about: &'static str) -> Method {
+    Method {
+        parameters: &[TARGETS],
+        expectations: expectations::PAINTER,
+        ..Method::new(name, about, passes)
+    }
+}
+
+pub(super) const OBJECTS: Method = Method {
+    parameters: &[TARGETS, SORT],
+    curve: &["", ":sort=off"],
+    expectations: expectations::OBJECTS,
+    ..painter(
+        "painter-object",
+        "objects sorted on the CPU, hardware blending",
+    )
+};
+
+pub(super) const TRIANGLES: Method = painter(
+    "painter-triangle",
+    "triangles sorted on the CPU, hardware blending",
+);
+
+/// Premultiplied colour and alpha, as the sum of all fragments takes them.
+const SHADER: &str = "methods::weighted_sum::gather";
+
+const PASS: &str = "blend";
+
+fn passes(p: &mut Passes<'_>) -> Result<(), RenderError> {
+    p.order = order(p.b.spec);
+    if p.b.frame.output.is_over() {
+        // As engines draw: no targets of its own and no pass over the pixels.
+        let output = p.resource(Resource::Output);
+        p.geometry(SHADER).label(PASS).writes([output]);
+    } else {
+        let layers = p.target(Target::half("layers", 4, Blend::Over))?;
+        p.geometry(SHADER).label(PASS).writes([layers]);
+        p.resolve("methods::depth_peel::resolve", [layers]);
+    }
+    Ok(())
+}

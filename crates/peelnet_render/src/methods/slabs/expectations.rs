@@ -1,0 +1,60 @@
+//! What tests and `peelnet stress` expect of the methods in this folder.
+
+use super::{KEEP, RANGE, reference};
+use crate::methods::expected::*;
+
+fn is_small(spec: &MethodSpec) -> bool {
+    KEEP.word(spec) == "small"
+}
+
+fn is_of_pixel(spec: &MethodSpec) -> bool {
+    RANGE.word(spec) == "pixel"
+}
+
+pub(super) const SLABS: Expectations = Expectations {
+    guarantees: |_| Guarantees::TINTED,
+    reference: Some(reference::composite),
+    estimate: Some(reference::transmittances),
+    ..Expectations::DEFAULT
+};
+
+const BORDERS: KnownFailure = KnownFailure::new(
+    Property::Steady,
+    "moving-camera",
+    "what lies between a slab's known ends is guessed, and where a layer passes a slab's border it is another guess, or none",
+);
+
+const COINCIDENT: KnownFailure = KnownFailure::new(
+    Property::Transmittance,
+    "coplanar",
+    "sixteen coincident layers are a slab's nearest all at once, and without its farthest what lies behind them is guessed",
+);
+
+pub(super) const METHOD: Expectations = Expectations {
+    known_failures: &[
+        KnownFailure::swallowed("deep"),
+        KnownFailure::reordered("deep"),
+        BORDERS.when(is_of_pixel),
+        COINCIDENT.when(is_small),
+    ],
+    ..SLABS
+};
+
+pub(super) const SMALL: Expectations = Expectations {
+    known_failures: &[
+        KnownFailure::swallowed("deep"),
+        BORDERS.when(is_of_pixel),
+        COINCIDENT,
+    ],
+    ..SLABS
+};
+
+pub(super) const MEDIUM: Expectations = Expectations {
+    known_failures: &[KnownFailure::swallowed("deep")],
+    ..SLABS
+};
+
+pub(super) const LARGE: Expectations = Expectations {
+    known_failures: &[KnownFailure::swallowed("deep")],
+    ..SLABS
+};

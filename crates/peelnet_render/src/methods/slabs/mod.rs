@@ -1,0 +1,147 @@
+//! `deep-small`, `deep-medium`, `deep-large`: known layers without ordered access, in three or four slabs of the pixel's own range, and a
+//! learned guess of what lies between them, drawn with the exported text itself. `slabs` is the same without a network.
+
+mod expectations;
+pub mod reference;
+
+use crate::methods::prelude::*;
+use peelnet_core::methods::slabs::Layout;
+use peelnet_model::Inputs;
+
+const KEEP: Parameter = Parameter::words(
+    "keep",
+    "large (default, 42 bytes a pixel): four slabs; medium (34 bytes): three; small (30 bytes): three, and the farthest fragment of the nearest alone",
+    &["large", "medium", "small"],
+);
+
+const RANGE: Parameter = Parameter::words(
+    "range",
+    "what is cut into slabs: the pixel's own range of depth (pixel, by default), found by a geometry pass of its own; from where the pixel's ray enters the first box around a transparent part to where it leaves the last (boxes), found by a pass over boxes; or the frame's (frame), with a pass less and several times the error",
+    &["pixel", "boxes", "frame"],
+);
+
+/// What a method without a network keeps.
+fn plain_layout(spec: &MethodSpec) -> Layout {
+    let name = KEEP.word(spec);
+    let found = Layout::ALL.into_iter().find(|l| l.name() == name);
+    found.unwrap_or(Layout::Large)
+}
+
+const fn slabs(name: &'static str, about: &'static str) -> Method {
+    Method {
+        parameters: &[RANGE],
+        learned: true,
+        expectations: expectations::SLABS,
+        ..Method::new(name, about, passes)
+    }
+}
+
+pub(super) const METHOD: Method = Method {
+    parameters: &[KEEP, RANGE],
+    learned: false,
+    curve: &["", ":keep=medium", ":keep=small"],
+    expectations: expectations::METHOD,
+    ..slabs(
+        "slabs",
+        "slabs of depth in the pixel's range, each with its own sums and known ends; no network",
+    )
+};
+
+pub(super) const SMALL: Method = Method {
+    expectations: expectations::SMALL,
+    ..slabs(
+        "deep-small",
+        "known layers of three slabs and a learned guess between them, 30 bytes a pixel",
+    )
+};
+
+pub(super) const MEDIUM: Method = Method {
+    curve: &["", ":range=boxes", ":range=frame", ":scale=0.5"],
+    expectations: expectations::MEDIUM,
+    ..slabs(
+        "deep-medium",
+        "the same in 34 bytes a pixel: the one to ship",
+    )
+};
+
+pub(super) const LARGE: Method = Method {
+    curve: &["", ":range=boxes", ":range=frame"],
+    expectations: expectations::LARGE,
+    ..slabs(
+        "deep-large",
+        "the same of four slabs, 42 bytes a pixel: the most accurate",
+    )
+};
+
+/// What the statistics pass writes.
+fn kept(layout: Layout) -> Vec<Target> {
+    use Blend::{Add, Max, MaxAdd};
+    let four = |label, blend| Target::half(label, 4, blend);
+    match layout {
+        Layout::Small => vec![
+            four("absorbances of slabs and mean of one", Add),
+            four("nearest of slabs and farthest of one", Max),
+            Target::half("means of two slabs", 2, Add),
+        ],
+        Layout::Medium => vec![
+            four("absorbances of slabs and mean of one", Add),
+            four("nearest of slabs and mean of one", MaxAdd),
+            four("farthest of slabs and mean of one", MaxAdd),
+        ],
+        Layout::Large => vec![
+            four("absorbances of slabs", Add),
+            four("nearest of slabs", Max),
+            four("farthest of slabs", Max),
+            four("means of slabs", Add),
+        ],
+    }
+}
+
+fn passes(p: &mut Passes<'_>) -> Result<(), RenderError> {
+    let layout = if p.b.spec.needs_model() {
+        let Inputs::Slabs(design, _) = p.b.learned_weight()?.recipe.inputs else {
+            unreachable!("the recipe of a method of slabs reads slabs");
+        };
+        let layout = design.layout();
+        layout.expect("recipes that are drawn keep what a layout holds")
+    } else {
+        p.network.push_str(
+            "// The guess without a network: the middle between the bounds.\n\
+             fn peelnet_network(between: PeelnetBetween) -> f32 {\n    return 0.5;\n}\n",
+        );
+        let layout = plain_layout(p.b.spec);
+        for module in crate::shaders::slab_modules(layout.name()) {
+            p.network.push_str(crate::shaders::source(module)?);
+        }
+        layout
+    };
+    let [framed, boxes] = ["frame", "boxes"].map(|word| RANGE.word(p.b.spec) == word);
+    // The shaders' own case is the largest, over a range of its own.
+    let is_large = layout == Layout::Large;
+    let own_layout = (!is_large).then_some(layout.name());
+    let features = || own_layout.into_iter().chain(framed.then_some("frame"));
+    let sums = p.target(SUMS)?;
+    let kept = p.targets(kept(layout))?;
+    let range = (!framed).then_some(Target::half("range of depths", 2, Blend::MaxBytes));
+    let range = p.targets(range)?;
+    if boxes {
+        let pass = p.geometry("methods::slabs::boxes").boxes();
+        pass.label("range").writes(range.iter().copied());
+    } else if !framed {
+        p.geometry("methods::slabs::range")
+            .writes(range.iter().copied());
+    }
+    let first = kept[0];
+    p.geometry("methods::slabs::statistics")
+        .features(features())
+        .reads(range.iter().copied())
+        .writes(kept.iter().copied());
+    p.geometry("methods::slabs::gather")
+        .features(features())
+        .reads(kept)
+        .reads(range)
+        .writes([sums]);
+    p.resolve("methods::slabs::resolve", [sums, first])
+        .features((!is_large).then_some("three"));
+    p.tint()
+}

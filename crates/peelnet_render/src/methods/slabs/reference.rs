@@ -1,0 +1,56 @@
+//! The CPU reference.
+
+use super::{RANGE, plain_layout};
+use crate::methods::{MethodSpec, Pixel};
+use peelnet_core::{
+    absorbance::DepthWarp,
+    methods::slabs::{self, Between, Design, Extent},
+    statistics::SumPrecision,
+};
+use peelnet_model::{Inputs, Model};
+
+/// A guess of where between its bounds the share lies that is in front of a fragment.
+type Guess<'m> = Box<dyn Fn(&Between) -> f64 + 'm>;
+
+/// What the CPU reference keeps and guesses. Lists of fragments have no boxes: what is drawn with them has no reference.
+fn design_and_guess<'m>(
+    spec: &MethodSpec,
+    model: Option<&'m Model>,
+) -> Option<(Design, Guess<'m>)> {
+    let (design, guess): (_, Guess<'m>) = if spec.needs_model() {
+        let model = model?;
+        let Inputs::Slabs(design, features) = model.meta.recipe.inputs else {
+            return None;
+        };
+        let guess = move |between: &_| model.answer(features, between);
+        (design, Box::new(guess))
+    } else {
+        (plain_layout(spec).design(), Box::new(slabs::middle))
+    };
+    let extent = match RANGE.word(spec) {
+        "boxes" => return None,
+        "frame" => Extent::Frame,
+        _ => Extent::Pixel,
+    };
+    Some((Design { extent, ..design }, guess))
+}
+
+/// What a pixel's colour is; `None` where a learned method has no model, and with boxes.
+pub fn composite(spec: &MethodSpec, p: &Pixel<'_>) -> Option<[f32; 3]> {
+    let (design, guess) = design_and_guess(spec, p.model)?;
+    let (fragments, c0) = (p.fragments, p.background);
+    Some(slabs::composite(fragments, c0, &p.warp, design, guess))
+}
+
+/// The estimated transmittance in front of each fragment, given as (linear depth, α).
+pub fn transmittances(
+    spec: &MethodSpec,
+    fragments: &[(f32, f32)],
+    warp: &DepthWarp,
+    model: Option<&Model>,
+) -> Option<Vec<f64>> {
+    let (design, guess) = design_and_guess(spec, model)?;
+    let half = SumPrecision::Half;
+    let seen = slabs::seen(fragments, warp, design, half);
+    Some(seen.iter().map(|seen| seen.weight(&guess)).collect())
+}
