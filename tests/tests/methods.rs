@@ -6,11 +6,14 @@ use peelnet_core::{
     methods::over,
     tolerance,
 };
-use peelnet_render::{Image, MethodOptions, MethodSpec, Renderer};
+use peelnet_render::{
+    Image, MethodOptions, MethodSpec, Renderer,
+    geometry::{dual::DualPeel, frame::Output, needs::compare_needs, single::SinglePeel},
+};
 use peelnet_scene::Material;
 use peelnet_tests::{
-    HALF, assert_all, assert_near, draw, frame, gpu, half_sums, object, prepare, rectangle,
-    representatives, scene, wall, walls,
+    HALF, assert_all, assert_near, draw, frame, gpu, half_sums, network_of, object, prepare,
+    rectangle, representatives, scene, wall, walls,
 };
 
 /// An opaque silhouette inside smoke: all layers have one colour, so every normalised method, whatever its weights, shows
@@ -39,6 +42,33 @@ fn a_silhouette_in_smoke_is_exact() {
             assert_near(image.pixels[5], want, bound, &spec);
         }
     }
+}
+
+/// What every geometry pass says that it reads of a surface is what naga finds in its shader, of every method in every setting, of the
+/// passes that show surfaces, and of those that peel for datasets.
+#[test]
+fn passes_say_what_they_read() {
+    let gpu = gpu();
+    let scene = walls(&worked_example(), [0.1, 0.2, 0.3]);
+    let compared = compare_needs(|| {
+        let renderer = Renderer::new(&gpu, &scene).unwrap();
+        for spec in MethodSpec::curve() {
+            let learned = network_of(&spec).map(|(learned, _)| learned);
+            let options = MethodOptions {
+                learned,
+                ..MethodOptions::sized([4, 4])
+            };
+            frame(&gpu, &scene, &spec, options);
+        }
+        let mut surfaces = renderer.surfaces([4, 4], 1).unwrap();
+        renderer.image(&mut surfaces, &scene.views[0]).unwrap();
+        let frame = renderer.targets([4, 4], Output::Image, None).unwrap();
+        SinglePeel::new(&renderer, &frame, &["dataset"]).unwrap();
+        DualPeel::new(&renderer, &frame, &["dataset"], None).unwrap();
+    });
+    let (faults, passes) = compared.unwrap();
+    assert!(faults.is_empty(), "{faults:#?}");
+    assert!(passes > 100, "{passes}");
 }
 
 /// A method without passes says why it cannot be drawn.

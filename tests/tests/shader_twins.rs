@@ -25,9 +25,9 @@ fn evaluate(
             outputs[id.x] = y;
         }}"
     );
-    let wgsl = peelnet_render::shaders::link("driver", features, &[("driver", &root)]).unwrap();
+    let shader = peelnet_render::shaders::link("driver", features, &[("driver", &root)]).unwrap();
     let count = inputs.len();
-    gpu.run(&wgsl, inputs, count, count as u32).unwrap()
+    gpu.run(&shader.text, inputs, count, count as u32).unwrap()
 }
 
 #[test]

@@ -266,7 +266,7 @@ impl Harvester {
                 ("peel::collect_single", [second, first].map(bind))
             }
         };
-        let wgsl = peelnet_render::shaders::link(shader, &[], &[])?;
+        let shader = peelnet_render::shaders::link(shader, &[], &[])?;
         let kernel = |textures: Vec<Bind<'_>>| {
             let mut entries = vec![
                 Bind::Uniform(&self.sbuffer.tile),
@@ -276,7 +276,7 @@ impl Harvester {
                 Bind::Write(&storage.colors),
             ];
             entries.extend(textures);
-            Kernel::new(&self.gpu, "collect", &wgsl, &entries)
+            Kernel::new(&self.gpu, &shader, &entries)
         };
         Ok(Some(textures.map(kernel)))
     }

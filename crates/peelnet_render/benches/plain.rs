@@ -113,10 +113,11 @@ impl<'g> Plain<'g> {
             step_mode: wgpu::VertexStepMode::Vertex,
             attributes: &wgpu::vertex_attr_array![0 => Float32x4],
         })];
+        let shader = peelnet_render::shaders::plain("plain", SHADER);
         let gather = gpu.render_pipeline(&RenderPipeline {
             label: "plain",
-            vertex: ["plain", SHADER],
-            fragment: ["plain", SHADER],
+            vertex: &shader,
+            fragment: &shader,
             groups: &[Some(&scene_group)],
             buffers: &buffers,
             targets: &[
@@ -137,7 +138,10 @@ impl<'g> Plain<'g> {
             "plain",
             &[],
             &[("plain", RESOLVE)],
-            &[&sums, &transmittance].map(Bind::Texture),
+            &[
+                ("sums", Bind::Texture(&sums)),
+                ("transmittances", Bind::Texture(&transmittance)),
+            ],
             &[Some(output.state())],
             1,
         )?;

@@ -119,11 +119,14 @@ impl Canvas {
         let none = wgpu::TextureUsages::empty();
         let view = gpu.texture("canvas", FORMAT, size, 1, none)?;
         let mean = if samples > 1 {
-            let (shader, entries) = ("passes::samples::average", [Bind::Texture(&view)]);
+            let (shader, entries) = (
+                "passes::samples::average",
+                [("repetition", Bind::Texture(&view))],
+            );
             let mean = Target::half("mean", 4, Blend::Add);
             let target = [Some(mean.state())];
             let pass = FullscreenPass::new(gpu, shader, &[], &[], &entries, &target, 1)?;
-            let view = gpu.texture(mean.label, mean.format(), size, 1, none)?;
+            let view = gpu.texture(mean.name, mean.format(), size, 1, none)?;
             Some((pass, view))
         } else {
             None

@@ -62,7 +62,8 @@ impl Display {
         if self.pass.as_ref().is_none_or(|(of, _)| *of != pictures) {
             let text = [(SHADER, include_str!("display.wgsl"))];
             let [first, second] = pictures.each_ref().map(Bind::Texture);
-            let entries = [first, second, Bind::Uniform(&self.view)];
+            let view = Bind::Uniform(&self.view);
+            let entries = [("first", first), ("second", second), ("view", view)];
             let targets = [Some(SHOWN.into())];
             let pass = FullscreenPass::new(gpu, SHADER, &[], &text, &entries, &targets, 1)?;
             self.pass = Some((pictures, pass));

@@ -13,9 +13,7 @@ import package::scene::visible::visible;
 @if(two) @group(1) @binding(1) var bins_b: texture_2d<f32>;
 @if(four) @group(1) @binding(2) var bins_c: texture_2d<f32>;
 @if(four) @group(1) @binding(3) var bins_d: texture_2d<f32>;
-@if(pixel_bounds && !two) @group(1) @binding(1) var bounds: texture_2d<f32>;
-@if(pixel_bounds && two && !four) @group(1) @binding(2) var bounds: texture_2d<f32>;
-@if(pixel_bounds && four) @group(1) @binding(4) var bounds: texture_2d<f32>;
+@if(pixel_bounds) @group(1) @binding(4) var bounds: texture_2d<f32>;
 
 // Absorbance up to the far end of a bin; nothing before the first.
 fn up_to(pixel: vec2u, bin: i32) -> f32 {

@@ -10,7 +10,7 @@ import package::scene::visible::visible;
 // Node + 1 of the first in each list; 0 for an empty one.
 @group(1) @binding(0) var<storage, read_write> heads: array<atomic<u32>>;
 // Nodes asked for, also those beyond the pool.
-@group(1) @binding(1) var<storage, read_write> used: atomic<u32>;
+@group(1) @binding(1) var<storage, read_write> found: atomic<u32>;
 @group(1) @binding(2) var<storage, read_write> next: array<u32>;
 @group(1) @binding(3) var<storage, read_write> depths: array<f32>;
 @group(1) @binding(4) var<storage, read_write> triangles: array<u32>;
@@ -22,7 +22,7 @@ fn fragment_main(surface: Surface) {
     if !visible(surface) {
         discard;
     }
-    let node = atomicAdd(&used, 1u);
+    let node = atomicAdd(&found, 1u);
     // The pool is too small: it is made larger and the pass drawn again.
     if node >= arrayLength(&next) {
         discard;

@@ -9,11 +9,9 @@ import package::scene::visible::visible;
 
 @group(1) @binding(0) var absorbances: texture_2d<f32>;
 @group(1) @binding(1) var nearest: texture_2d<f32>;
-@if(small) @group(1) @binding(2) var firsts: texture_2d<f32>;
 @if(!small) @group(1) @binding(2) var farthest: texture_2d<f32>;
-@if(!small && !medium) @group(1) @binding(3) var firsts: texture_2d<f32>;
-@if(!frame && (small || medium)) @group(1) @binding(3) var range: texture_2d<f32>;
-@if(!frame && !small && !medium) @group(1) @binding(4) var range: texture_2d<f32>;
+@if(!medium) @group(1) @binding(3) var firsts: texture_2d<f32>;
+@if(!frame) @group(1) @binding(4) var range: texture_2d<f32>;
 
 struct Sums {
     @location(0) sum: vec4f,

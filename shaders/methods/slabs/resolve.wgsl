@@ -6,7 +6,7 @@ import package::helpers::screen::screen_corner;
 @if(!tinted) import package::learned::weight::peelnet_resolve;
 
 @group(0) @binding(0) var background: texture_2d<f32>;
-@group(0) @binding(1) var sum: texture_2d<f32>;
+@group(0) @binding(1) var sums: texture_2d<f32>;
 @group(0) @binding(2) var absorbances: texture_2d<f32>;
 @if(tinted) @group(0) @binding(3) var tinted: texture_2d<f32>;
 
@@ -19,16 +19,16 @@ fn vertex_main(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
 fn fragment_main(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let pixel = vec2u(position.xy);
     let behind = textureLoad(background, pixel, 0).rgb;
-    let sums = textureLoad(sum, pixel, 0);
+    let found = textureLoad(sums, pixel, 0);
     @if(tinted) {
         let passing = textureLoad(tinted, pixel, 0).rgb;
         let coverage = 1.0 - dot(passing, vec3f(1.0 / 3.0));
-        return peelnet_composite(within(sums), coverage, passing, behind);
+        return peelnet_composite(within(found), coverage, passing, behind);
     }
     @else {
         let slabs = textureLoad(absorbances, pixel, 0);
         @if(three) let absorbance = slabs.x + slabs.y + slabs.z;
         @else let absorbance = slabs.x + slabs.y + slabs.z + slabs.w;
-        return peelnet_resolve(sums, absorbance, behind);
+        return peelnet_resolve(found, absorbance, behind);
     }
 }

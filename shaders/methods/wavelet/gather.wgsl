@@ -14,8 +14,7 @@ import package::scene::visible::visible;
 @group(1) @binding(1) var quarters: texture_2d<f32>;
 @if(eighths) @group(1) @binding(2) var near_eighths: texture_2d<f32>;
 @if(eighths) @group(1) @binding(3) var far_eighths: texture_2d<f32>;
-@if(pixel_bounds && !eighths) @group(1) @binding(2) var bounds: texture_2d<f32>;
-@if(pixel_bounds && eighths) @group(1) @binding(4) var bounds: texture_2d<f32>;
+@if(pixel_bounds) @group(1) @binding(4) var bounds: texture_2d<f32>;
 
 @fragment
 fn fragment_main(surface: Surface) -> Sums {

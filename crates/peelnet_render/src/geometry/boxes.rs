@@ -24,18 +24,18 @@ impl BoxPass {
         pass: &GeometryPass<'_>,
     ) -> Result<Self, RenderError> {
         let gpu = &scene.gpu;
-        let group = pass.bind(gpu);
+        let fragment = crate::shaders::link(pass.shader, pass.features, pass.extra)?;
+        let group = pass.bind(gpu, &fragment)?;
         let groups = [Some(&frame.scene_group), group.as_ref()];
         let groups = &groups[..1 + usize::from(group.is_some())];
         let vertex = crate::shaders::link("scene::box_vertex", &[], &[])?;
-        let fragment = crate::shaders::link(pass.shader, pass.features, pass.extra)?;
         let attributes = wgpu::vertex_attr_array![
             0 => Float32x4, 1 => Float32x4, 2 => Float32x4, 3 => Float32x4, 4 => Float32x4, 5 => Float32x4
         ];
         let pipeline = gpu.render_pipeline(&RenderPipeline {
             label: pass.label,
-            vertex: ["scene::box_vertex", &vertex],
-            fragment: [pass.shader, &fragment],
+            vertex: &vertex,
+            fragment: &fragment,
             groups,
             buffers: &[Some(wgpu::VertexBufferLayout {
                 array_stride: size_of::<BoxData>() as u64,

@@ -1,7 +1,7 @@
 //! How many fragments each pixel has, and the prefix sum of that.
 
 use crate::geometry::{
-    FrameTargets, GeometryPass, GeometryPipelines, RenderError, SceneBuffers,
+    FrameTargets, GeometryPass, GeometryPipelines, Needs, RenderError, SceneBuffers,
     frame::attachment,
     long_runs::{self, kernel},
 };
@@ -54,8 +54,9 @@ impl CountPass {
         let pass = GeometryPass {
             label: "count",
             shader: "peel::count",
+            needs: Needs::DEPTH,
             features,
-            entries: &[Bind::Write(&counts)],
+            entries: &[("counts", Bind::Write(&counts))],
             ..GeometryPass::NONE
         };
         let pipelines = scene.pipelines(frame, &pass)?;

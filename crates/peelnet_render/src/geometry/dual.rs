@@ -7,7 +7,7 @@
 //! A dataset needs fragments one by one, not composited. Its layers keep the maximum, and callers count what is found less than there is.
 
 use crate::geometry::{
-    Blend, FrameTargets, GeometryPass, GeometryPipelines, RenderError, SceneBuffers,
+    Blend, FrameTargets, GeometryPass, GeometryPipelines, Needs, RenderError, SceneBuffers,
     frame::clear_color,
 };
 use crate::gpu::{Gpu, bind::Bind, record::Recorder, wgpu};
@@ -62,20 +62,22 @@ impl DualPeel {
         let init = GeometryPass {
             label: "dual init",
             shader: "peel::dual_init",
+            needs: Needs::DEPTH,
             features,
             targets: &[max(Rg32Float)],
             ..GeometryPass::NONE
         };
         let peel = |range: &wgpu::TextureView, found: Option<&wgpu::Buffer>| {
-            let entries: Vec<_> = [Bind::Texture(range)]
+            let entries: Vec<_> = [("range", Bind::Texture(range))]
                 .into_iter()
-                .chain(found.map(Bind::Write))
+                .chain(found.map(|found| ("found", Bind::Write(found))))
                 .collect();
             let mut features = features.to_vec();
             features.extend(found.map(|_| "counted"));
             let pass = GeometryPass {
                 label: "dual peel",
                 shader: "peel::dual",
+                needs: Needs::COLOR,
                 features: &features,
                 entries: &entries,
                 targets: &[max(Rg32Float), layer.clone(), layer.clone()],

@@ -3,7 +3,7 @@
 use crate::geometry::RenderError;
 use crate::gpu::{
     Gpu, RenderPipeline,
-    bind::{Bind, Bound},
+    bind::{Bind, Bound, numbered},
     record::Recorder,
     wgpu,
 };
@@ -16,23 +16,24 @@ pub struct FullscreenPass {
 }
 
 impl FullscreenPass {
-    /// Builds the pass, onto targets of so many samples a pixel; `extra` are modules that are not in `shaders/`, `entries` the bindings of
-    /// group 0 in order.
+    /// Builds the pass, onto targets of so many samples a pixel; `extra` are modules that are not in `shaders/`, `entries` what the names of
+    /// group 0 stand for.
     pub fn new(
         gpu: &Gpu,
         shader: &str,
         features: &[&str],
         extra: &[(&str, &str)],
-        entries: &[Bind<'_>],
+        entries: &[(&str, Bind<'_>)],
         targets: &[Option<wgpu::ColorTargetState>],
         samples: u32,
     ) -> Result<Self, RenderError> {
-        let group = gpu.bind(shader, wgpu::ShaderStages::FRAGMENT, entries);
-        let wgsl = crate::shaders::link(shader, features, extra)?;
+        let linked = crate::shaders::link(shader, features, extra)?;
+        let entries = numbered(&linked, 0, entries)?;
+        let group = gpu.bind(shader, wgpu::ShaderStages::FRAGMENT, &entries);
         let pipeline = gpu.render_pipeline(&RenderPipeline {
             label: shader,
-            vertex: [shader, &wgsl],
-            fragment: [shader, &wgsl],
+            vertex: &linked,
+            fragment: &linked,
             groups: &[Some(&group)],
             buffers: &[],
             targets,

@@ -7,7 +7,12 @@ use crate::geometry::{
     RenderError,
     sbuffer::{FragmentStorage, Tile},
 };
-use crate::gpu::{Gpu, Kernel, bind::Bind, record::Recorder, wgpu};
+use crate::gpu::{
+    Gpu, Kernel,
+    bind::{Bind, numbered},
+    record::Recorder,
+    wgpu,
+};
 
 /// Fragments of a run that one thread sorts at most: two windows, and few enough that its neighbours do not wait long. Scenes of 100 layers are
 /// faster with it than with one thread for all, on a software rasteriser; where the border is best was not searched.
@@ -38,8 +43,8 @@ pub(crate) fn kernel(
     parameters: &str,
     entries: &[Bind<'_>],
 ) -> Result<Kernel, RenderError> {
-    let wgsl = crate::shaders::link(shader, features, &[("parameters", parameters)])?;
-    Ok(Kernel::new(gpu, shader, &wgsl, entries))
+    let shader = crate::shaders::link(shader, features, &[("parameters", parameters)])?;
+    Ok(Kernel::new(gpu, &shader, entries))
 }
 
 #[derive(Debug)]
@@ -137,18 +142,20 @@ pub struct Fold {
 
 impl Fold {
     /// For runs of at most `most` fragments; `features` name the pass that composites, `parameters` is its module of that name, and
-    /// `entries` are its bindings.
+    /// `entries` what its names stand for.
     pub fn new(
         gpu: &Gpu,
         features: &[&str],
         parameters: &str,
-        entries: &[Bind<'_>],
+        entries: &[(&str, Bind<'_>)],
         most: u32,
     ) -> Result<Self, RenderError> {
         let step = gpu.upload("piece", &[0u32; 4], wgpu::BufferUsages::UNIFORM);
-        let entries = [entries, &[Bind::Uniform(&step)]].concat();
+        let entries = [entries, &[("step", Bind::Uniform(&step))]].concat();
+        let shader = crate::shaders::link("peel::fold", features, &[("parameters", parameters)])?;
+        let entries = numbered(&shader, 0, &entries)?;
         Ok(Self {
-            kernel: kernel(gpu, "peel::fold", features, parameters, &entries)?,
+            kernel: Kernel::new(gpu, &shader, &entries),
             pieces: most.div_ceil(PIECE),
             step,
         })

@@ -1,14 +1,15 @@
 use crate::geometry::{
     FrameTargets, RenderError, SceneBuffers,
     count::UNWRITTEN,
-    specialise,
+    needs::{self, Needs},
     upload::{ATTRIBUTES, Vertex},
 };
 use crate::gpu::{
     Gpu, RenderPipeline,
-    bind::{Bind, Bound},
+    bind::{Bind, Bound, numbered},
     wgpu,
 };
+use crate::shaders::Shader;
 use peelnet_scene::Variant;
 
 /// Pipelines of one geometry pass: one for each variant of the materials that it draws.
@@ -42,12 +43,14 @@ pub struct GeometryPass<'a> {
     pub shader: &'a str,
     /// Whether it draws the opaque surfaces of the scene, not the transparent ones.
     pub opaque: bool,
+    /// What it reads of surfaces.
+    pub needs: Needs,
     /// Features besides those that the scene's materials need.
     pub features: &'a [&'a str],
     /// Modules that are not in the repository.
     pub extra: &'a [(&'a str, &'a str)],
-    /// The bindings of group 1 in order.
-    pub entries: &'a [Bind<'a>],
+    /// What the names of group 1 stand for.
+    pub entries: &'a [(&'a str, Bind<'a>)],
     /// Colour targets; none of a pass that writes storage alone.
     pub targets: &'a [Option<wgpu::ColorTargetState>],
     pub depth: Option<wgpu::DepthStencilState>,
@@ -60,6 +63,7 @@ impl GeometryPass<'_> {
         label: "",
         shader: "",
         opaque: false,
+        needs: Needs::COLOR,
         features: &[],
         extra: &[],
         entries: &[],
@@ -68,10 +72,11 @@ impl GeometryPass<'_> {
         samples: 1,
     };
 
-    /// Bind group 1, where it has any.
-    pub(crate) fn bind(&self, gpu: &Gpu) -> Option<Bound> {
+    /// Bind group 1 of a linked shader, where it has any.
+    pub(crate) fn bind(&self, gpu: &Gpu, shader: &Shader) -> Result<Option<Bound>, RenderError> {
+        let entries = numbered(shader, 1, self.entries)?;
         let stages = wgpu::ShaderStages::FRAGMENT;
-        (!self.entries.is_empty()).then(|| gpu.bind(self.label, stages, self.entries))
+        Ok((!entries.is_empty()).then(|| gpu.bind(self.label, stages, &entries)))
     }
 }
 
@@ -84,7 +89,8 @@ impl SceneBuffers {
         pass: &GeometryPass<'_>,
     ) -> Result<GeometryPipelines, RenderError> {
         let (scene_group, runs) = self.half(frame, pass.opaque);
-        let own_group = pass.bind(&self.gpu);
+        let mut own_group: Option<Option<Bound>> = None;
+        needs::note(pass.shader, pass.features, pass.extra, pass.needs);
         let mut variants: Vec<(Variant, Option<usize>)> = Vec::new();
         for run in runs {
             if !variants.iter().any(|(v, _)| *v == run.variant) {
@@ -98,12 +104,17 @@ impl SceneBuffers {
         let mut all = Vec::with_capacity(variants.len());
         for (variant, maps) in variants {
             let mut features = pass.features.to_vec();
-            features.extend(variant.features());
+            features.extend(pass.needs.features(&variant.features()));
             features.extend(compared);
-            let (features, fragment) = specialise::link(pass.shader, features, pass.extra)?;
+            let fragment = crate::shaders::link(pass.shader, &features, pass.extra)?;
+            // The same of all variants: what a pass reads besides surfaces is its own.
+            let own_group = match &own_group {
+                Some(known) => known.as_ref(),
+                None => own_group.insert(pass.bind(&self.gpu, &fragment)?).as_ref(),
+            };
             let maps = maps.filter(|_| features.contains(&"mapped"));
             let maps = maps.map(|number| self.maps.bound(number));
-            let mut groups = vec![Some(scene_group), own_group.as_ref(), maps];
+            let mut groups = vec![Some(scene_group), own_group, maps];
             while groups.last().is_some_and(Option::is_none) {
                 groups.pop();
             }
@@ -122,19 +133,19 @@ impl SceneBuffers {
         }
         Ok(GeometryPipelines {
             opaque: pass.opaque,
-            group: own_group,
+            group: own_group.flatten(),
             variants: all,
         })
     }
 }
 
-/// The pipeline of one variant. Passes that need no colour draw many variants alike: equal texts and groups share a pipeline.
+/// The pipeline of one variant. Passes that need no colour draw many variants alike: equal shaders and groups share a pipeline.
 fn pipeline(
     gpu: &Gpu,
     pass: &GeometryPass<'_>,
     groups: &[Option<&Bound>],
     features: &[&str],
-    fragment: &str,
+    fragment: &Shader,
     culled: bool,
 ) -> Result<wgpu::RenderPipeline, RenderError> {
     let carried = [
@@ -168,8 +179,8 @@ fn pipeline(
     })];
     Ok(gpu.render_pipeline(&RenderPipeline {
         label: pass.label,
-        vertex: ["scene::vertex", &vertex],
-        fragment: [pass.shader, fragment],
+        vertex: &vertex,
+        fragment,
         groups,
         buffers: &buffers,
         targets: match pass.targets {

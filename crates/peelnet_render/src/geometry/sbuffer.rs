@@ -4,7 +4,7 @@
 //! whose fragments fit. Nothing is dropped: every sort counts what is out of order, lost or stored twice behind it ([`CountPass::faults`]).
 
 use crate::geometry::{
-    FrameTargets, GeometryPass, GeometryPipelines, RenderError, SceneBuffers,
+    FrameTargets, GeometryPass, GeometryPipelines, Needs, RenderError, SceneBuffers,
     count::{CountPass, FragmentCount},
     error::over_budget,
     long_runs::{self, LongRuns, MAX_RUN, SHORT, kernel},
@@ -263,16 +263,22 @@ impl SBuffer {
         let storage = FragmentStorage::new(gpu, fragments, self.tinted)?;
         let (offsets, faults) = (&self.count.offsets, &self.count.faults);
         let stored = [
-            Bind::Write(&self.count.counts),
-            Bind::Read(offsets),
-            Bind::Write(&storage.depths),
-            Bind::Write(&storage.triangles),
-            Bind::Write(&storage.colors),
-            Bind::Uniform(&self.tile),
+            ("counts", Bind::Write(&self.count.counts)),
+            ("offsets", Bind::Read(offsets)),
+            ("depths", Bind::Write(&storage.depths)),
+            ("triangles", Bind::Write(&storage.triangles)),
+            ("colors", Bind::Write(&storage.colors)),
+            ("tile", Bind::Uniform(&self.tile)),
         ];
+        // Which surfaces there are takes their materials' numbers alone.
+        let needs = match self.features.contains(&"named") {
+            true => Needs::MATERIAL,
+            false => Needs::COLOR,
+        };
         let pass = GeometryPass {
             label: "store",
             shader: "peel::store",
+            needs: needs | Needs::TRIANGLE,
             features: &self.features,
             entries: &stored,
             ..GeometryPass::NONE

@@ -480,9 +480,9 @@ pub fn shader_bytes(scene: &Scene) -> Result<usize, RenderError> {
                 "methods::blended::gather"
             };
             for shader in ["scene::vertex", pass] {
-                let text = crate::shaders::link(shader, &features, &[])?;
-                if !texts.contains(&text) {
-                    texts.push(text);
+                let shader = crate::shaders::link(shader, &features, &[])?;
+                if !texts.contains(&shader.text) {
+                    texts.push(shader.text.clone());
                 }
             }
         }

@@ -2,7 +2,7 @@
 //! on coplanar fragments, see `peel/single.wgsl`.
 
 use crate::geometry::{
-    FrameTargets, GeometryPass, GeometryPipelines, RenderError, SceneBuffers,
+    FrameTargets, GeometryPass, GeometryPipelines, Needs, RenderError, SceneBuffers,
     frame::{attachment, clear_color, depth_attachment, depth_state},
 };
 use crate::gpu::{bind::Bind, record::Recorder, wgpu};
@@ -37,8 +37,9 @@ impl SinglePeel {
             let pass = GeometryPass {
                 label: "peel",
                 shader: "peel::single",
+                needs: Needs::COLOR | Needs::TRIANGLE,
                 features,
-                entries: &[Bind::Texture(key)],
+                entries: &[("last", Bind::Texture(key))],
                 targets: &[Some(Rgba32Float.into()), Some(Rg32Uint.into())],
                 depth: Some(depth_state(Depth32Float)),
                 ..GeometryPass::NONE

@@ -168,7 +168,8 @@ mod tests {
     #[test]
     fn structs_lie_as_shaders_read_them() {
         let features = ["lit", "pbr", "sun", "numbered", "material"];
-        let text = crate::shaders::link("methods::blended::gather", &features, &[]).expect("links");
+        let shader = crate::shaders::link("methods::blended::gather", &features, &[]);
+        let text = shader.expect("links").text.clone();
         let capabilities = naga::valid::Capabilities::empty();
         let (module, _) = crate::shaders::validate("twins", &text, capabilities).expect("valid");
         twin!(&module, "Light", LightData, [position, is_point, color]);

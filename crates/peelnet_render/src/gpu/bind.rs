@@ -1,6 +1,7 @@
 //! A bind group and its layout from one list, so that the two cannot disagree.
 
 use crate::gpu::Gpu;
+use crate::shaders::{Shader, ShaderError};
 
 /// One resource; its place in the list is its binding number.
 #[derive(Clone, Copy, Debug)]
@@ -21,6 +22,9 @@ pub enum Bind<'a> {
     None,
 }
 
+/// Entries of a bind group's layout.
+pub type Layout = Vec<wgpu::BindGroupLayoutEntry>;
+
 /// A layout with one group that fits it.
 #[derive(Clone, Debug)]
 pub struct Bound {
@@ -28,8 +32,34 @@ pub struct Bound {
     pub layout: wgpu::BindGroupLayout,
     /// For passes.
     pub group: wgpu::BindGroup,
-    /// The layout as text: equal for groups that fit the same pipelines.
-    pub signature: String,
+    /// What the layout was made of: equal for groups that fit the same pipelines.
+    pub entries: Layout,
+}
+
+/// Named resources in the order of a linked shader's binding numbers in a group. Those that the shader does not read are left out.
+///
+/// # Errors
+/// A variable of the shader for which nothing is given.
+pub fn numbered<'a>(
+    shader: &Shader,
+    group: u32,
+    named: &[(&str, Bind<'a>)],
+) -> Result<Vec<Bind<'a>>, ShaderError> {
+    let mut all = Vec::new();
+    for (_, number, variable) in shader.bindings.iter().filter(|b| b.0 == group) {
+        let Some((_, bind)) = named.iter().find(|(name, _)| name == variable) else {
+            let names: Vec<_> = named.iter().map(|(name, _)| *name).collect();
+            return Err(ShaderError::new(format!(
+                "shader {} reads '{variable}', and its pass gives it [{}]",
+                shader.name,
+                names.join(", ")
+            )));
+        };
+        let number = *number as usize;
+        all.resize(all.len().max(number + 1), Bind::None);
+        all[number] = *bind;
+    }
+    Ok(all)
 }
 
 impl Gpu {
@@ -70,9 +100,9 @@ impl Gpu {
             entries: &group_entries,
         });
         Bound {
-            signature: format!("{layout_entries:?}"),
             layout,
             group,
+            entries: layout_entries,
         }
     }
 }

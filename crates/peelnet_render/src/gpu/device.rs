@@ -3,6 +3,7 @@ use crate::gpu::{
     adapter::{self, OPTIONAL_FEATURES},
     pipelines::PipelineCache,
 };
+use crate::shaders::Shader;
 use std::{
     borrow::Cow,
     sync::{
@@ -406,11 +407,11 @@ impl Gpu {
         Ok(texture.create_view(&wgpu::TextureViewDescriptor::default()))
     }
 
-    pub(crate) fn shader(&self, label: &str, wgsl: &str) -> wgpu::ShaderModule {
+    pub(crate) fn shader(&self, shader: &Shader) -> wgpu::ShaderModule {
         self.device
             .create_shader_module(wgpu::ShaderModuleDescriptor {
-                label: Some(label),
-                source: wgpu::ShaderSource::Wgsl(wgsl.into()),
+                label: Some(&shader.name),
+                source: wgpu::ShaderSource::Wgsl(shader.text.as_str().into()),
             })
     }
 

@@ -2,16 +2,29 @@
 
 use crate::gpu::{
     Gpu,
-    bind::{Bind, Bound},
+    bind::{Bind, Bound, Layout},
     device::locked,
     record::Recorder,
 };
+use crate::shaders::{Shader, ShaderId};
 use std::{collections::HashMap, sync::Mutex};
 
 #[derive(Debug, Default)]
 pub(crate) struct PipelineCache {
-    render: Mutex<HashMap<String, wgpu::RenderPipeline>>,
-    compute: Mutex<HashMap<String, wgpu::ComputePipeline>>,
+    render: Mutex<HashMap<RenderKey, wgpu::RenderPipeline>>,
+    compute: Mutex<HashMap<(ShaderId, Layout), wgpu::ComputePipeline>>,
+}
+
+/// All that decides a render pipeline.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+struct RenderKey {
+    shaders: [ShaderId; 2],
+    layouts: Vec<Option<Layout>>,
+    buffers: Vec<Option<(u64, wgpu::VertexStepMode, Vec<wgpu::VertexAttribute>)>>,
+    targets: Vec<Option<wgpu::ColorTargetState>>,
+    depth: Option<wgpu::DepthStencilState>,
+    samples: u32,
+    culled: Option<wgpu::Face>,
 }
 
 /// A compute shader, whose entry point is `main`, with its bindings.
@@ -24,16 +37,17 @@ pub struct Kernel {
 
 impl Kernel {
     /// Compiles the shader where its pipeline is not known yet.
-    pub fn new(gpu: &Gpu, label: &str, wgsl: &str, entries: &[Bind<'_>]) -> Self {
+    pub fn new(gpu: &Gpu, shader: &Shader, entries: &[Bind<'_>]) -> Self {
+        let label = shader.name.as_str();
         let group = gpu.bind(label, wgpu::ShaderStages::COMPUTE, entries);
-        let key = format!("{}\n{wgsl}", group.signature);
+        let key = (shader.id, group.entries.clone());
         let all = &gpu.shared.pipelines.compute;
         let known = locked(all).get(&key).cloned();
         let pipeline = known.unwrap_or_else(|| {
             let descriptor = wgpu::ComputePipelineDescriptor {
                 label: Some(label),
                 layout: Some(&gpu.layout(&[Some(&group.layout)])),
-                module: &gpu.shader(label, wgsl),
+                module: &gpu.shader(shader),
                 entry_point: Some("main"),
                 compilation_options: wgpu::PipelineCompilationOptions::default(),
                 cache: None,
@@ -65,15 +79,15 @@ pub fn groups_2d(items: u32) -> [u32; 2] {
     [x, groups.div_ceil(x)]
 }
 
-/// A render pipeline that is not made yet, with the entry points `vertex_main` and `fragment_main`.
+/// A render pipeline that is not compiled yet, with the entry points `vertex_main` and `fragment_main`.
 #[derive(Debug)]
 pub struct RenderPipeline<'a> {
     /// Label for messages.
     pub label: &'a str,
-    /// Name and text of the vertex shader.
-    pub vertex: [&'a str; 2],
-    /// Name and text of the fragment shader.
-    pub fragment: [&'a str; 2],
+    /// The vertex shader.
+    pub vertex: &'a Shader,
+    /// The fragment shader.
+    pub fragment: &'a Shader,
     /// Bind groups of the layouts that it takes.
     pub groups: &'a [Option<&'a Bound>],
     /// Vertex buffers.
@@ -91,21 +105,32 @@ pub struct RenderPipeline<'a> {
 impl Gpu {
     /// A render pipeline, made where there is none that equals it yet.
     pub fn render_pipeline(&self, made_of: &RenderPipeline<'_>) -> wgpu::RenderPipeline {
-        let RenderPipeline {
-            groups, samples, ..
-        } = made_of;
-        let signatures: Vec<_> = groups.iter().map(|g| g.map(|g| &g.signature)).collect();
-        let states = (made_of.targets, &made_of.depth, samples, made_of.culled);
-        let ([_, vertex], [_, fragment]) = (made_of.vertex, made_of.fragment);
-        let buffers = made_of.buffers;
-        let key = format!("{signatures:?}\n{states:?}\n{buffers:?}\n{vertex}\n{fragment}");
+        let layouts = made_of.groups.iter();
+        let buffers = made_of.buffers.iter();
+        let key = RenderKey {
+            shaders: [made_of.vertex.id, made_of.fragment.id],
+            layouts: layouts.map(|g| g.map(|g| g.entries.clone())).collect(),
+            buffers: buffers
+                .map(|b| {
+                    let b = b.as_ref()?;
+                    Some((b.array_stride, b.step_mode, b.attributes.to_vec()))
+                })
+                .collect(),
+            targets: made_of.targets.to_vec(),
+            depth: made_of.depth.clone(),
+            samples: made_of.samples,
+            culled: made_of.culled,
+        };
         // Compiling takes long: the lock is not held meanwhile, and the first of two equal pipelines stays.
         if let Some(known) = locked(&self.shared.pipelines.render).get(&key) {
             return known.clone();
         }
-        let [vertex, fragment] =
-            [made_of.vertex, made_of.fragment].map(|[name, wgsl]| self.shader(name, wgsl));
-        let layouts: Vec<_> = groups.iter().map(|g| g.map(|g| &g.layout)).collect();
+        let [vertex, fragment] = [made_of.vertex, made_of.fragment].map(|s| self.shader(s));
+        let layouts: Vec<_> = made_of
+            .groups
+            .iter()
+            .map(|g| g.map(|g| &g.layout))
+            .collect();
         let descriptor = wgpu::RenderPipelineDescriptor {
             label: Some(made_of.label),
             layout: Some(&self.layout(&layouts)),

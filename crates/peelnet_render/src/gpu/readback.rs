@@ -312,7 +312,7 @@ impl Gpu {
         let bytes = (answers * size_of::<O>()) as u64;
         let answers = self.storage("answers", bytes)?;
         let entries = [Bind::Read(&inputs), Bind::Write(&answers)];
-        let kernel = Kernel::new(self, "run", wgsl, &entries);
+        let kernel = Kernel::new(self, &crate::shaders::plain("run", wgsl), &entries);
         let mut encoder = self.encoder();
         kernel.dispatch(&mut Recorder::new(self, &mut encoder, None), threads);
         self.queue.submit([encoder.finish()]);

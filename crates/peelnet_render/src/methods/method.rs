@@ -11,7 +11,7 @@ use super::{
 use crate::{
     RenderError,
     passes::{
-        Passes,
+        Conditions, Passes,
         compositor::{Build, Compositor},
     },
 };
@@ -43,7 +43,7 @@ pub struct Method {
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Draws {
     /// By a fixed list of passes.
-    Passes(fn(&mut Passes<'_>) -> Result<(), RenderError>),
+    Passes(fn(&mut Passes<'_>)),
     /// By itself.
     Own(fn(&Build<'_>) -> Result<Box<dyn Compositor>, RenderError>),
 }
@@ -109,12 +109,19 @@ impl Numbered {
     }
 }
 
+fn list<'a>(passes: fn(&mut Passes<'_>), on: Conditions<'a>, network: &str) -> Passes<'a> {
+    let mut p = Passes::new(on);
+    network.clone_into(&mut p.network);
+    passes(&mut p);
+    p
+}
+
 impl Method {
     /// A method with what most have in common: normalised sums in 16 bits, no parameters, one point on its curve.
     pub(super) const fn new(
         name: &'static str,
         about: &'static str,
-        plan: fn(&mut Passes<'_>) -> Result<(), RenderError>,
+        passes: fn(&mut Passes<'_>),
     ) -> Self {
         Self {
             name,
@@ -125,7 +132,7 @@ impl Method {
             cpu_only: None,
             curve: &[""],
             expectations: Expectations::DEFAULT,
-            draws: Draws::Passes(plan),
+            draws: Draws::Passes(passes),
         }
     }
 
@@ -137,21 +144,31 @@ impl Method {
     ) -> Self {
         Self {
             draws: Draws::Own(build),
-            ..Self::new(name, about, |_| Ok(()))
+            ..Self::new(name, about, |_| {})
         }
     }
 
     pub(crate) fn build(&self, b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
+        if let Some(why) = self.cpu_only {
+            let why = format!("cannot be drawn: {why}; bench measures its error");
+            return Err(RenderError::Refused(format!("{} {why}", b.spec)));
+        }
+        let network = match self.learned {
+            true => b.learned_weight()?.wgsl.as_str(),
+            false => "",
+        };
         match self.draws {
-            Draws::Passes(plan) => {
-                let mut p = Passes::new(b);
-                if self.learned {
-                    b.learned_weight()?.wgsl.clone_into(&mut p.network);
-                }
-                plan(&mut p)?;
-                p.build()
-            }
+            Draws::Passes(passes) => list(passes, b.conditions(), network).build(b),
             Draws::Own(build) => build(b),
+        }
+    }
+
+    /// Its passes with the text of a network; `None` for a method that draws by itself.
+    #[cfg(test)]
+    pub(crate) fn passes<'a>(&self, on: Conditions<'a>, network: &str) -> Option<Passes<'a>> {
+        match self.draws {
+            Draws::Passes(passes) => Some(list(passes, on, network)),
+            Draws::Own(_) => None,
         }
     }
 

@@ -48,7 +48,7 @@ mod prelude {
     };
     pub(super) use crate::{
         RenderError,
-        geometry::Blend,
+        geometry::{Blend, Needs},
         passes::{
             ENDS, Passes, SUMS, TRANSMITTANCE, Target,
             compositor::{Build, Compositor, DrawContext, Fit, FrameStats},

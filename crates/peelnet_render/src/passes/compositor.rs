@@ -1,3 +1,4 @@
+use super::Conditions;
 use crate::geometry::{FrameTargets, SamplePoint, SceneBuffers, fullscreen::FullscreenPass};
 use crate::gpu::{Gpu, bind::Bind, record::Recorder, wgpu};
 use crate::methods::MethodSpec;
@@ -101,6 +102,20 @@ pub(crate) struct Build<'a> {
     pub options: &'a MethodOptions,
 }
 
+impl<'a> Build<'a> {
+    /// What the method's passes depend on.
+    pub fn conditions(&self) -> Conditions<'a> {
+        Conditions {
+            spec: self.spec,
+            recipe: self.options.learned.as_ref().map(|learned| learned.recipe),
+            size: self.frame.size,
+            grey: self.scene.grey,
+            tinted: self.scene.tinted,
+            over: self.frame.output.is_over(),
+        }
+    }
+}
+
 /// The pass that writes finished pixels to where the frame's output goes.
 pub(crate) fn resolve(
     gpu: &Gpu,
@@ -108,7 +123,7 @@ pub(crate) fn resolve(
     shader: &str,
     features: &[&str],
     extra: &[(&str, &str)],
-    entries: &[Bind<'_>],
+    entries: &[(&str, Bind<'_>)],
 ) -> Result<FullscreenPass, RenderError> {
     let (targets, samples) = ([Some(frame.output.state())], frame.output.samples());
     FullscreenPass::new(gpu, shader, features, extra, entries, &targets, samples)

@@ -52,14 +52,20 @@ pub(crate) fn build(b: &Build<'_>, scale: f32) -> Result<Box<dyn Compositor>, Re
     let extent = gpu.upload("full extent", &extent, wgpu::BufferUsages::UNIFORM);
     let mut entries = vec![
         // Its output is one.
-        Bind::Texture(frame.image.as_ref().unwrap_or(&frame.background)),
-        Bind::Texture(&full.background),
-        Bind::Uniform(&extent),
+        (
+            "low",
+            Bind::Texture(frame.image.as_ref().unwrap_or(&frame.background)),
+        ),
+        ("background", Bind::Texture(&full.background)),
+        ("full", Bind::Uniform(&extent)),
     ];
     let mut features: &[&str] = &[];
     if let (Some(low), Some(full)) = (&frame.depth, &full.depth) {
-        entries.extend([low, full].map(|depth| Bind::Texture(&depth.view)));
-        entries.push(Bind::Uniform(&b.scene.camera));
+        entries.extend([
+            ("low_depth", Bind::Texture(&low.view)),
+            ("full_depth", Bind::Texture(&full.view)),
+            ("camera", Bind::Uniform(&b.scene.camera)),
+        ]);
         features = &["opaque"];
     }
     let shader = "passes::low_resolution::upsample";

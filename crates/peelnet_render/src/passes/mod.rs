@@ -1,6 +1,7 @@
 //! Methods with a fixed list of passes: geometry passes into blended targets and storage of so many values a pixel, then one resolve.
 //!
-//! A method states its targets, its storage and its passes; what is allocated, bound, drawn and reported follows from that alone.
+//! A method states its targets, its storage and its passes by name; what is allocated, bound, drawn and reported follows from that alone.
+//! A resource has the name of the variable by which shaders read or write it, so that nobody counts bindings.
 //! All but the painter's methods give the same image whatever the order of drawing.
 
 pub(crate) mod compositor;
@@ -10,19 +11,25 @@ pub mod views;
 
 use crate::RenderError;
 use crate::geometry::{
-    Blend, BoxPass, GeometryPass, GeometryPipelines, Order, Sorted,
+    Blend, BoxPass, GeometryPass, GeometryPipelines, Needs, Order, Sorted,
     count::{unwritten_attachment, unwritten_texture},
     frame::clear_color,
     fullscreen::FullscreenPass,
 };
-use crate::gpu::{Kernel, bind::Bind, wgpu};
-use crate::methods::parameter::Precision;
+use crate::gpu::{
+    Kernel,
+    bind::{Bind, numbered},
+    wgpu,
+};
+use crate::methods::{MethodSpec, Precision};
 use compositor::{Build, Compositor, DrawContext, FrameStats, resolve};
+use peelnet_model::Recipe;
 use views::Shows;
 
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Target {
-    pub label: &'static str,
+    /// The variable of the shaders that read it.
+    pub name: &'static str,
     /// 1, 2 or 4.
     pub channels: u32,
     /// Whether it has 32 bits a channel unless `targets` says otherwise.
@@ -34,19 +41,19 @@ pub(crate) struct Target {
 pub(crate) const SUMS: Target = Target::half("sums", 4, Blend::Add);
 
 /// `T_∞`.
-pub(crate) const TRANSMITTANCE: Target = Target::half("transmittance", 1, Blend::Transmit);
+pub(crate) const TRANSMITTANCE: Target = Target::half("transmittances", 1, Blend::Transmit);
 
 /// `T_∞` of red, green and blue.
-pub(crate) const TINTED: Target = Target::half("tinted transmittance", 4, Blend::Transmit);
+pub(crate) const TINTED: Target = Target::half("tinted", 4, Blend::Transmit);
 
 /// The sums of a pixel's nearest and farthest fragment, where they stand apart from the others'.
 pub(crate) const ENDS: Target = Target::half("ends", 4, Blend::Add);
 
 impl Target {
     /// Of 16 bits a channel by default, or of 8 where it blends bytes.
-    pub const fn half(label: &'static str, channels: u32, blend: Blend) -> Self {
+    pub const fn half(name: &'static str, channels: u32, blend: Blend) -> Self {
         Self {
-            label,
+            name,
             channels,
             full: false,
             blend,
@@ -54,10 +61,10 @@ impl Target {
     }
 
     /// Of 32 bits a channel by default.
-    pub const fn full(label: &'static str, channels: u32, blend: Blend) -> Self {
+    pub const fn full(name: &'static str, channels: u32, blend: Blend) -> Self {
         Self {
             full: true,
-            ..Self::half(label, channels, blend)
+            ..Self::half(name, channels, blend)
         }
     }
 
@@ -81,16 +88,31 @@ impl Target {
     }
 }
 
+/// What passes read and write.
 #[derive(Clone, Debug)]
-pub(crate) enum Resource {
-    Target(Target, wgpu::TextureView),
-    Texture(wgpu::TextureView),
-    Storage(wgpu::Buffer),
-    Uniform(wgpu::Buffer),
+enum Resource {
+    Target(Target),
+    /// Bytes of each pixel, and of the frame besides; whether they are zero at the start of every frame.
+    Storage {
+        name: &'static str,
+        pixel: u32,
+        frame: u64,
+        cleared: bool,
+    },
+    Given(&'static str, Given),
     /// Where the finished picture goes, blended as that is; there is no resolve then.
     Output,
 }
 
+/// A resource that something else allocates.
+#[derive(Clone, Debug)]
+pub(crate) enum Given {
+    Texture(wgpu::TextureView),
+    Storage(wgpu::Buffer),
+    Uniform(wgpu::Buffer),
+}
+
+/// A resource of [`Passes`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Handle(usize);
 
@@ -105,13 +127,24 @@ enum Draws {
     Pixels,
 }
 
-/// One pass: its shader, what it reads and what it writes. Its bindings are what it reads, then the storage that it writes, in bind
-/// group 1; behind the frame's size as `vec4u` in group 0 of a compute shader, and behind `C_0` in group 0 of the resolve.
+impl Draws {
+    /// The bind group of what a pass reads and of the storage that it writes; a geometry pass has the scene in group 0.
+    const fn group(self) -> u32 {
+        match self {
+            Self::Surfaces | Self::Boxes => 1,
+            Self::Threads(_) | Self::Pixels => 0,
+        }
+    }
+}
+
+/// One pass: its shader, what it reads and what it writes, targets in the order of the shader's locations. A compute shader may read the
+/// frame's size as `frame`, the resolve `C_0` as `background`.
 #[derive(Debug)]
 pub(crate) struct Pass {
     shader: String,
     label: String,
     draws: Draws,
+    needs: Needs,
     features: Vec<&'static str>,
     parameters: Option<String>,
     reads: Vec<Handle>,
@@ -153,15 +186,28 @@ impl Pass {
     }
 }
 
-/// What a method allocates, and its passes in their order; the last is the resolve.
-pub(crate) struct Passes<'b> {
-    pub b: &'b Build<'b>,
+/// What a method's passes depend on besides its name and parameters.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Conditions<'a> {
+    pub spec: &'a MethodSpec,
+    /// Of the network of a learned method.
+    pub recipe: Option<Recipe>,
+    /// Pixels of the frame.
+    pub size: [u32; 2],
+    /// Whether all colours of the scene are grey.
+    pub grey: bool,
+    /// Whether light takes a colour where it passes through a surface.
+    pub tinted: bool,
+    /// Whether it draws over a caller's target.
+    pub over: bool,
+}
+
+/// What a method allocates, and its passes in their order; the last is the resolve. Nothing is allocated before [`Passes::build`].
+#[derive(Debug)]
+pub(crate) struct Passes<'a> {
+    pub on: Conditions<'a>,
     resources: Vec<Resource>,
     passes: Vec<Pass>,
-    /// Storage, cleared at the start of every frame.
-    cleared: Vec<wgpu::Buffer>,
-    pixel_bytes: u32,
-    pub frame_bytes: u64,
     /// The text of the module `parameters` of all passes.
     pub parameters: String,
     /// The exported text of a learned method's network.
@@ -169,65 +215,71 @@ pub(crate) struct Passes<'b> {
     pub order: Order,
 }
 
-impl<'b> Passes<'b> {
-    pub const fn new(b: &'b Build<'b>) -> Self {
+impl<'a> Passes<'a> {
+    pub const fn new(on: Conditions<'a>) -> Self {
         Self {
-            b,
+            on,
             resources: Vec::new(),
             passes: Vec::new(),
-            cleared: Vec::new(),
-            pixel_bytes: 0,
-            frame_bytes: 0,
             parameters: String::new(),
             network: String::new(),
             order: Order::Scene,
         }
     }
 
-    /// A resource that something else makes.
-    pub fn resource(&mut self, resource: Resource) -> Handle {
+    fn resource(&mut self, resource: Resource) -> Handle {
         self.resources.push(resource);
         Handle(self.resources.len() - 1)
     }
 
-    /// A target, of 16 or 32 bits as the method's `targets` says.
-    pub fn target(&mut self, mut target: Target) -> Result<Handle, RenderError> {
-        let (gpu, spec) = (&self.b.scene.gpu, self.b.spec);
-        if let Some(precision) = spec.targets() {
-            target.full = precision == Precision::Full;
-        }
-        if target.full {
-            let (feature, hint) = (wgpu::Features::FLOAT32_BLENDABLE, "use targets=f16");
-            gpu.need(feature, &spec.to_string(), hint)?;
-        }
-        let (format, none) = (target.format(), wgpu::TextureUsages::empty());
-        let view = gpu.texture(target.label, format, self.b.frame.size, 1, none)?;
-        self.pixel_bytes += format.block_copy_size(None).unwrap_or_default();
-        Ok(self.resource(Resource::Target(target, view)))
+    /// A resource that something else allocates.
+    pub fn given(&mut self, name: &'static str, given: Given) -> Handle {
+        self.resource(Resource::Given(name, given))
     }
 
-    pub fn targets(
-        &mut self,
-        all: impl IntoIterator<Item = Target>,
-    ) -> Result<Vec<Handle>, RenderError> {
+    /// Where the finished picture goes.
+    pub fn output(&mut self) -> Handle {
+        self.resource(Resource::Output)
+    }
+
+    /// A target, of 16 or 32 bits as the method's `targets` says.
+    pub fn target(&mut self, mut target: Target) -> Handle {
+        if let Some(precision) = self.on.spec.targets() {
+            target.full = precision == Precision::Full;
+        }
+        self.resource(Resource::Target(target))
+    }
+
+    pub fn targets(&mut self, all: impl IntoIterator<Item = Target>) -> Vec<Handle> {
         all.into_iter().map(|target| self.target(target)).collect()
     }
 
     /// A buffer, zero at the start of every frame: so many bytes of each pixel, and of the frame besides.
-    pub fn storage(&mut self, label: &str, pixel: u32, frame: u64) -> Result<Handle, RenderError> {
-        self.pixel_bytes += pixel;
-        self.frame_bytes += frame;
-        let bytes = u64::from(self.b.frame.pixels()) * u64::from(pixel) + frame;
-        let buffer = self.b.scene.gpu.storage(label, bytes)?;
-        self.cleared.push(buffer.clone());
-        Ok(self.resource(Resource::Storage(buffer)))
+    pub fn storage(&mut self, name: &'static str, pixel: u32, frame: u64) -> Handle {
+        self.resource(Resource::Storage {
+            name,
+            pixel,
+            frame,
+            cleared: true,
+        })
     }
 
-    fn pass(&mut self, shader: &str, draws: Draws) -> &mut Pass {
+    /// A buffer of so many bytes that is not cleared.
+    pub fn uncleared(&mut self, name: &'static str, frame: u64) -> Handle {
+        self.resource(Resource::Storage {
+            name,
+            pixel: 0,
+            frame,
+            cleared: false,
+        })
+    }
+
+    fn pass(&mut self, shader: &str, draws: Draws, needs: Needs) -> &mut Pass {
         self.passes.push(Pass {
             shader: shader.into(),
             label: shader.into(),
             draws,
+            needs,
             features: Vec::new(),
             parameters: None,
             reads: Vec::new(),
@@ -237,47 +289,49 @@ impl<'b> Passes<'b> {
         &mut self.passes[place]
     }
 
-    /// A pass over the transparent surfaces. Times are listed under the last part of the shader's name.
-    pub fn geometry(&mut self, shader: &str) -> &mut Pass {
+    /// A pass over the transparent surfaces, of which it reads what it `needs`. Times are listed under the last part of the shader's name.
+    pub fn geometry(&mut self, shader: &str, needs: Needs) -> &mut Pass {
         let label = shader.rsplit("::").next().unwrap_or(shader);
-        self.pass(shader, Draws::Surfaces).label(label)
+        self.pass(shader, Draws::Surfaces, needs).label(label)
     }
 
     pub fn compute(&mut self, shader: &str, threads: u64) -> &mut Pass {
-        self.pass(shader, Draws::Threads(threads))
+        self.pass(shader, Draws::Threads(threads), Needs::DEPTH)
     }
 
     /// The pass that writes finished pixels: the last.
     pub fn resolve(&mut self, shader: &str, reads: impl IntoIterator<Item = Handle>) -> &mut Pass {
-        self.pass(shader, Draws::Pixels).reads(reads)
+        self.pass(shader, Draws::Pixels, Needs::DEPTH).reads(reads)
     }
 
     /// Where light takes a colour, the pass before the resolve also writes what fragments cover of each channel into one more target, and
     /// the resolve reads that.
-    pub fn tint(&mut self) -> Result<(), RenderError> {
-        if !self.b.scene.tinted {
-            return Ok(());
+    pub fn tint(&mut self) {
+        if !self.on.tinted {
+            return;
         }
-        let tint = self.target(TINTED)?;
+        let tint = self.target(TINTED);
         if let [.., gather, resolve] = self.passes.as_mut_slice() {
             gather.features(["tinted"]).writes([tint]);
             resolve.features(["tinted"]).reads([tint]);
         }
-        Ok(())
     }
 
-    fn find(&self, is: impl Fn(&Target) -> bool) -> Option<Handle> {
-        let mut all = self.resources.iter();
-        let found = all.position(|r| matches!(r, Resource::Target(target, _) if is(target)));
-        found.map(Handle)
+    fn find(&self, name: &str) -> Option<(Handle, &Target)> {
+        let all = self.resources.iter().enumerate();
+        let mut targets = all.filter_map(|(k, resource)| match resource {
+            Resource::Target(target) => Some((Handle(k), target)),
+            _ => None,
+        });
+        targets.find(|(_, target)| target.name == name)
     }
 
-    /// Shows the sums instead of what is made of them: the first target, and that of the pixel's ends where they stand apart.
+    /// Shows the sums instead of what is made of them, and with them those of the pixel's ends where they stand apart.
     fn show_sums(&mut self) {
-        let Some(sums) = self.find(|_| true) else {
+        let Some((sums, _)) = self.find(SUMS.name) else {
             return;
         };
-        let ends = self.find(|target| target.label == ENDS.label);
+        let ends = self.find(ENDS.name).map(|(ends, _)| ends);
         let is_resolve = |last: &mut Pass| last.draws == Draws::Pixels;
         if self.passes.pop_if(is_resolve).is_some() {
             self.resolve("passes::sums::resolve", [sums])
@@ -286,24 +340,52 @@ impl<'b> Passes<'b> {
         }
     }
 
-    pub fn build(mut self) -> Result<Box<dyn Compositor>, RenderError> {
-        let b = self.b;
+    /// The features of a pass's shader, but for those of materials.
+    fn features(&self, pass: &Pass) -> Vec<&'static str> {
+        let sums = self.find(SUMS.name);
+        let is_full = pass.draws == Draws::Pixels && sums.is_some_and(|(_, target)| target.full);
+        let full = is_full.then_some("full_sums");
+        pass.features.iter().copied().chain(full).collect()
+    }
+
+    /// The modules that a pass's shader is linked with besides those of the repository.
+    fn modules<'p>(&'p self, pass: &'p Pass) -> Vec<(&'p str, &'p str)> {
+        let parameters = pass.parameters.as_ref().unwrap_or(&self.parameters);
+        let modules = [
+            ("parameters", parameters.as_str()),
+            ("learned::weight", self.network.as_str()),
+        ];
+        modules.into_iter().filter(|m| !m.1.is_empty()).collect()
+    }
+
+    /// Allocates what the passes need and makes their pipelines.
+    ///
+    /// # Errors
+    /// A target that this GPU cannot blend, what does not fit its memory, or a shader that lacks a name.
+    pub fn build(mut self, b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
         if b.options.shows == Shows::Sums {
             self.show_sums();
         }
-        let passes = self.passes.iter().map(|pass| self.build_pass(pass));
-        let passes: Vec<PlannedPass> = passes.collect::<Result<_, _>>()?;
+        let mut sizes = Sizes::default();
+        let resources = self.resources.iter();
+        let resources: Vec<_> = resources
+            .map(|resource| resource.allocate(b, &mut sizes))
+            .collect::<Result<_, _>>()?;
+        let passes = self.passes.iter();
+        let passes: Vec<PlannedPass> = passes
+            .map(|pass| self.build_pass(b, pass, &resources))
+            .collect::<Result<_, _>>()?;
         let is_bare = |p: &PlannedPass| p.colors.is_empty() && matches!(p.work, Work::Surfaces(_));
         let attachment = match passes.iter().any(is_bare) {
             true => Some(unwritten_texture(&b.scene.gpu, b.frame)?),
             false => None,
         };
-        let pixel_bytes = self.pixel_bytes + u32::from(attachment.is_some());
+        let pixel_bytes = sizes.pixel + u32::from(attachment.is_some());
         let sorted = Sorted::new(b.scene, self.order)?;
-        let frame_bytes = self.frame_bytes + sorted.as_ref().map_or(0, Sorted::bytes);
+        let frame_bytes = sizes.frame + sorted.as_ref().map_or(0, Sorted::bytes);
         Ok(Box::new(Planned {
             passes,
-            cleared: self.cleared,
+            cleared: sizes.cleared,
             attachment,
             sorted,
             bytes_per_pixel: f64::from(pixel_bytes)
@@ -311,60 +393,62 @@ impl<'b> Passes<'b> {
         }))
     }
 
-    fn build_pass(&self, pass: &Pass) -> Result<PlannedPass, RenderError> {
-        let (b, gpu, output) = (self.b, &self.b.scene.gpu, self.b.frame.output);
-        let (shader, mut features) = (pass.shader.as_str(), pass.features.clone());
-        let parameters = pass.parameters.as_ref().unwrap_or(&self.parameters);
-        let modules = [
-            ("parameters", parameters.as_str()),
-            ("learned::weight", &self.network),
-        ];
-        let modules: Vec<_> = modules.into_iter().filter(|m| !m.1.is_empty()).collect();
+    fn build_pass(
+        &self,
+        b: &Build<'_>,
+        pass: &Pass,
+        resources: &[Allocated],
+    ) -> Result<PlannedPass, RenderError> {
+        let (gpu, output) = (&b.scene.gpu, b.frame.output);
+        let (shader, features) = (pass.shader.as_str(), self.features(pass));
+        let modules = self.modules(pass);
         let [width, height] = b.frame.size;
-        let size = [width, height, 0, 0];
-        let size = gpu.upload("frame size", &size, wgpu::BufferUsages::UNIFORM);
-        let mut entries = match pass.draws {
-            Draws::Threads(_) => vec![Bind::Uniform(&size)],
-            Draws::Pixels => vec![Bind::Texture(&b.frame.background)],
+        let size = gpu.upload(
+            "frame size",
+            &[width, height, 0, 0],
+            wgpu::BufferUsages::UNIFORM,
+        );
+        let mut entries: Vec<(&str, Bind<'_>)> = match pass.draws {
+            Draws::Threads(_) => vec![("frame", Bind::Uniform(&size))],
+            Draws::Pixels => vec![("background", Bind::Texture(&b.frame.background))],
             Draws::Surfaces | Draws::Boxes => Vec::new(),
         };
-        entries.extend(
-            pass.reads
-                .iter()
-                .filter_map(|h| match &self.resources[h.0] {
-                    Resource::Target(_, view) | Resource::Texture(view) => {
-                        Some(Bind::Texture(view))
-                    }
-                    Resource::Storage(buffer) => Some(Bind::Read(buffer)),
-                    Resource::Uniform(buffer) => Some(Bind::Uniform(buffer)),
-                    Resource::Output => None,
-                }),
-        );
+        for read in &pass.reads {
+            let name = self.resources[read.0].name();
+            entries.extend(match &resources[read.0] {
+                Allocated::Texture(view) => Some((name, Bind::Texture(view))),
+                Allocated::Storage(buffer) => Some((name, Bind::Read(buffer))),
+                Allocated::Uniform(buffer) => Some((name, Bind::Uniform(buffer))),
+                Allocated::Output => None,
+            });
+        }
         let (mut colors, mut states, mut samples) = (Vec::new(), Vec::new(), 1);
         for written in &pass.writes {
-            match &self.resources[written.0] {
-                Resource::Target(target, view) => {
+            let resource = &self.resources[written.0];
+            match (resource, &resources[written.0]) {
+                (Resource::Target(target), Allocated::Texture(view)) => {
                     colors.push(Some((view.clone(), target.blend.start())));
                     states.push(Some(target.state()));
                 }
-                Resource::Output => {
+                (Resource::Output, _) => {
                     colors.push(None);
                     states.push(Some(output.state()));
                     samples = output.samples();
                 }
-                Resource::Storage(buffer) => entries.push(Bind::Write(buffer)),
-                Resource::Texture(_) | Resource::Uniform(_) => {}
+                (_, Allocated::Storage(buffer)) => {
+                    entries.push((resource.name(), Bind::Write(buffer)));
+                }
+                _ => {}
             }
         }
         let work = match pass.draws {
             Draws::Threads(threads) => {
-                let wgsl = crate::shaders::link(shader, &features, &modules)?;
+                let shader = crate::shaders::link(shader, &features, &modules)?;
                 let threads = u32::try_from(threads).unwrap_or(u32::MAX);
-                Work::Threads(Kernel::new(gpu, shader, &wgsl, &entries), threads)
+                let entries = numbered(&shader, pass.draws.group(), &entries)?;
+                Work::Threads(Kernel::new(gpu, &shader, &entries), threads)
             }
             Draws::Pixels => {
-                let is_full = |target: &Target| target.label == SUMS.label && target.full;
-                features.extend(self.find(is_full).map(|_| "full_sums"));
                 let pass = resolve(gpu, b.frame, shader, &features, &modules, &entries);
                 Work::Pixels(pass?)
             }
@@ -372,6 +456,7 @@ impl<'b> Passes<'b> {
                 let geometry = GeometryPass {
                     label: &pass.label,
                     shader,
+                    needs: pass.needs,
                     features: &features,
                     extra: &modules,
                     entries: &entries,
@@ -390,6 +475,68 @@ impl<'b> Passes<'b> {
             label: pass.label.clone(),
             colors,
             work,
+        })
+    }
+}
+
+/// A resource of a frame.
+#[derive(Debug)]
+enum Allocated {
+    Texture(wgpu::TextureView),
+    Storage(wgpu::Buffer),
+    Uniform(wgpu::Buffer),
+    Output,
+}
+
+/// Bytes of a pixel, bytes of the frame besides, and storage to be cleared.
+#[derive(Debug, Default)]
+struct Sizes {
+    pixel: u32,
+    frame: u64,
+    cleared: Vec<wgpu::Buffer>,
+}
+
+impl Resource {
+    const fn name(&self) -> &'static str {
+        match self {
+            Self::Target(Target { name, .. })
+            | Self::Storage { name, .. }
+            | Self::Given(name, _) => name,
+            Self::Output => "output",
+        }
+    }
+
+    fn allocate(&self, b: &Build<'_>, sizes: &mut Sizes) -> Result<Allocated, RenderError> {
+        let gpu = &b.scene.gpu;
+        Ok(match self {
+            Self::Target(target) => {
+                if target.full {
+                    let (feature, hint) = (wgpu::Features::FLOAT32_BLENDABLE, "use targets=f16");
+                    gpu.need(feature, &b.spec.to_string(), hint)?;
+                }
+                let (format, none) = (target.format(), wgpu::TextureUsages::empty());
+                sizes.pixel += format.block_copy_size(None).unwrap_or_default();
+                Allocated::Texture(gpu.texture(target.name, format, b.frame.size, 1, none)?)
+            }
+            Self::Storage {
+                name,
+                pixel,
+                frame,
+                cleared,
+            } => {
+                let bytes = u64::from(b.frame.pixels()) * u64::from(*pixel) + frame;
+                let buffer = gpu.storage(name, bytes)?;
+                sizes.pixel += pixel;
+                sizes.frame += frame;
+                if *cleared {
+                    sizes.cleared.push(buffer.clone());
+                }
+                Allocated::Storage(buffer)
+            }
+            Self::Given(_, Given::Texture(view)) => Allocated::Texture(view.clone()),
+            Self::Given(_, Given::Storage(buffer)) => Allocated::Storage(buffer.clone()),
+            Self::Given(_, Given::Uniform(buffer)) => Allocated::Uniform(buffer.clone()),
+            Self::Output => Allocated::Output,
         })
     }
 }
@@ -474,5 +621,103 @@ impl Compositor for Planned {
             bytes_per_pixel: self.bytes_per_pixel,
             ..Default::default()
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        methods::METHODS,
+        shaders::{PORTABLE, link, naga, source, validate},
+        target::LearnedWeight,
+    };
+    use std::collections::BTreeSet;
+
+    /// A pass's names are those of the variables that its shader reads, and it writes as many targets as its shader has outputs: in every
+    /// setting of every method.
+    #[test]
+    fn shaders_and_passes_have_the_same_names() {
+        let (mut faults, mut passes) = (BTreeSet::new(), 0);
+        for method in METHODS.iter().filter(|m| m.cpu_only.is_none()) {
+            let mut specs: Vec<_> = MethodSpec::points(method).collect();
+            if method.has_targets() {
+                let first = specs[0].clone();
+                let words = Precision::WORDS.map(|word| first.with("targets", word));
+                specs.extend(words.into_iter().flatten());
+            }
+            for spec in &specs {
+                let learned = LearnedWeight::shipped(spec);
+                assert_eq!(
+                    learned.is_some(),
+                    method.learned,
+                    "{spec} ships with its network"
+                );
+                let network = learned.as_ref().map_or("", |learned| &learned.wgsl);
+                for (grey, tinted) in [(false, false), (true, false), (false, true)] {
+                    if tinted && !spec.guarantees().tinted {
+                        continue;
+                    }
+                    let on = Conditions {
+                        spec,
+                        recipe: learned.as_ref().map(|learned| learned.recipe),
+                        size: [640, 480],
+                        grey,
+                        tinted,
+                        over: false,
+                    };
+                    let Some(list) = method.passes(on, network) else {
+                        continue;
+                    };
+                    for pass in &list.passes {
+                        passes += 1;
+                        let found = compare(&list, pass);
+                        faults
+                            .extend(found.map(|fault| format!("{spec}, {}: {fault}", pass.shader)));
+                    }
+                }
+            }
+        }
+        assert!(faults.is_empty(), "{faults:#?}");
+        assert!(passes > 200, "{passes}");
+    }
+
+    /// What of a pass and of its shader is not the same.
+    fn compare(list: &Passes<'_>, pass: &Pass) -> Option<String> {
+        let mut features = list.features(pass);
+        if pass.draws == Draws::Surfaces {
+            features.extend(pass.needs.features(&[]));
+        }
+        let shader = link(&pass.shader, &features, &list.modules(pass)).expect("links");
+        let is_own = |b: &&(u32, u32, String)| b.0 == pass.draws.group();
+        let always = |name: &&str| !["background", "frame"].contains(name);
+        let variables = shader.bindings.iter().filter(is_own).map(|b| b.2.as_str());
+        let variables: BTreeSet<_> = variables.filter(always).collect();
+        let resource = |handle: &Handle| &list.resources[handle.0];
+        let is_target = |r: &&Resource| matches!(r, Resource::Target(_) | Resource::Output);
+        let written = || pass.writes.iter().map(resource);
+        let storage = written().filter(|r| !is_target(r));
+        let names = pass.reads.iter().map(resource).chain(storage);
+        let names: BTreeSet<_> = names.map(Resource::name).collect();
+        // What another feature makes superfluous is declared and not read.
+        let text = source(&pass.shader).expect("it has a module");
+        let is_declared = |name: &&&str| text.contains(&format!(" {name}: "));
+        let superfluous = names.difference(&variables).filter(is_declared).count();
+        if names.len() != variables.len() + superfluous || !variables.is_subset(&names) {
+            return Some(format!("it reads {variables:?} and is given {names:?}"));
+        }
+        let (module, _) = validate(&pass.shader, &shader.text, PORTABLE).expect("valid");
+        let mut entries = module.entry_points.iter();
+        let fragment = entries.find(|e| e.stage == naga::ShaderStage::Fragment)?;
+        let result = fragment.function.result.as_ref();
+        let outputs = result.map_or(0, |result| match &module.types[result.ty].inner {
+            naga::TypeInner::Struct { members, .. } => members.len(),
+            _ => 1,
+        });
+        let targets = match pass.draws {
+            Draws::Pixels => 1,
+            _ => written().filter(is_target).count(),
+        };
+        (outputs != targets).then(|| format!("it has {outputs} outputs and {targets} targets"))
     }
 }

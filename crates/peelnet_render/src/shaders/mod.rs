@@ -11,15 +11,21 @@ pub use peelnet_shaders::SOURCES;
 use std::{
     borrow::Cow,
     cell::RefCell,
-    collections::HashMap,
-    sync::{Mutex, PoisonError},
+    collections::{BTreeSet, HashMap},
+    sync::{Arc, Mutex, PoisonError},
 };
-use wesl::{ModulePath, VirtualResolver, Wesl};
+use wesl::{EscapeMangler, Mangler as _, ModulePath, VirtualResolver, Wesl};
 
 /// Why a shader could not be made: a path that is no module's, what the linker refused, or what naga refused with its source lines.
 #[derive(Debug, thiserror::Error)]
 #[error("{0}")]
 pub struct ShaderError(String);
+
+impl ShaderError {
+    pub(crate) const fn new(message: String) -> Self {
+        Self(message)
+    }
+}
 
 fn no_module(path: &str) -> ShaderError {
     ShaderError(format!(
@@ -75,36 +81,97 @@ pub fn with_altered<T>(path: &str, text: &str, work: impl FnOnce() -> T) -> T {
     work()
 }
 
+/// A shader's number in this process: equal for equal modules, features and texts, so that it stands for the text in keys.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct ShaderId(u32);
+
+/// A linked shader.
+#[derive(Debug)]
+pub struct Shader {
+    /// See [`ShaderId`].
+    pub id: ShaderId,
+    /// The root module.
+    pub name: String,
+    /// Plain WGSL.
+    pub text: String,
+    /// Bind group, binding number and name of each resource.
+    pub bindings: Vec<(u32, u32, String)>,
+}
+
+/// All that decides a linked shader's text.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+struct ShaderKey {
+    root: String,
+    /// In alphabetical order.
+    features: BTreeSet<String>,
+    /// Paths and texts of modules that are not in the repository; of equal paths, the last counts.
+    modules: Vec<(String, String)>,
+}
+
 /// Links `root` (a path such as `methods::wboit::gather`) with the given features on and extra modules in place.
 ///
 /// Linking is deterministic, so its results are kept for the life of the process.
 ///
 /// # Errors
 /// An unknown module, a missing import, or WGSL that does not parse.
-pub fn link(root: &str, features: &[&str], extra: &[(&str, &str)]) -> Result<String, ShaderError> {
-    static LINKED: Mutex<Option<HashMap<String, String>>> = Mutex::new(None);
-    let altered = ALTERED.with_borrow(Clone::clone);
-    let altered = altered.iter().map(|(p, t)| (p.as_str(), t.as_str()));
-    // Of a module's texts, the last counts.
-    let extra: Vec<_> = altered.chain(extra.iter().copied()).collect();
-    let key = format!("{root:?} {features:?} {extra:?}");
-    let linked = || LINKED.lock().unwrap_or_else(PoisonError::into_inner);
-    if let Some(text) = linked().get_or_insert_default().get(&key) {
-        return Ok(text.clone());
-    }
-    let text = link_uncached(root, features, &extra)?;
-    linked().get_or_insert_default().insert(key, text.clone());
-    Ok(text)
-}
-
-fn link_uncached(
+pub fn link(
     root: &str,
     features: &[&str],
     extra: &[(&str, &str)],
-) -> Result<String, ShaderError> {
+) -> Result<Arc<Shader>, ShaderError> {
+    let altered = ALTERED.with_borrow(Clone::clone).into_iter();
+    let owned = |&(path, text): &(&str, &str)| (path.to_owned(), text.to_owned());
+    let key = ShaderKey {
+        root: root.to_owned(),
+        features: features.iter().map(|&f| f.to_owned()).collect(),
+        modules: altered.chain(extra.iter().map(owned)).collect(),
+    };
+    interned(key, link_uncached)
+}
+
+/// A shader whose text is complete.
+pub fn plain(name: &str, text: &str) -> Arc<Shader> {
+    let key = ShaderKey {
+        root: name.to_owned(),
+        features: BTreeSet::new(),
+        modules: vec![(String::new(), text.to_owned())],
+    };
+    let text = |_: &ShaderKey| Ok((text.to_owned(), Vec::new()));
+    interned(key, text).expect("nothing is linked")
+}
+
+type Linked = (String, Vec<(u32, u32, String)>);
+
+/// The shader of a key, linked where it is not known.
+fn interned(
+    key: ShaderKey,
+    link: impl FnOnce(&ShaderKey) -> Result<Linked, ShaderError>,
+) -> Result<Arc<Shader>, ShaderError> {
+    static KNOWN: Mutex<Option<HashMap<ShaderKey, Arc<Shader>>>> = Mutex::new(None);
+    let known = || KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(shader) = known().get_or_insert_default().get(&key) {
+        return Ok(shader.clone());
+    }
+    // Linking takes long: the lock is not held meanwhile, and the first of two equal shaders stays.
+    let (text, bindings) = link(&key)?;
+    let mut known = known();
+    let known = known.get_or_insert_default();
+    let shader = Arc::new(Shader {
+        id: ShaderId(known.len() as u32),
+        name: key.root.clone(),
+        text,
+        bindings,
+    });
+    Ok(known.entry(key).or_insert(shader).clone())
+}
+
+fn link_uncached(key: &ShaderKey) -> Result<Linked, ShaderError> {
     let mut resolver = VirtualResolver::new();
-    for (path, text) in SOURCES.iter().chain(extra) {
-        resolver.add_module(module_path(path)?, Cow::Borrowed(text));
+    for (path, text) in SOURCES {
+        resolver.add_module(module_path(path)?, Cow::Borrowed(*text));
+    }
+    for (path, text) in &key.modules {
+        resolver.add_module(module_path(path)?, Cow::Borrowed(text.as_str()));
     }
     let mut linker = Wesl::new_barebones().set_custom_resolver(resolver);
     let mut options = wesl::CompileOptions {
@@ -112,18 +179,49 @@ fn link_uncached(
         ..Default::default()
     };
     options.features.default = wesl::Feature::Disable;
-    for feature in features {
-        options
-            .features
-            .flags
-            .insert((*feature).to_owned(), wesl::Feature::Enable);
+    for feature in &key.features {
+        let flags = &mut options.features.flags;
+        flags.insert(feature.clone(), wesl::Feature::Enable);
     }
     linker
         .set_options(options)
         .set_mangler(wesl::ManglerKind::Escape);
-    let linked = linker.compile(&module_path(root)?);
+    let linked = linker.compile(&module_path(&key.root)?);
+    let root = &key.root;
     let linked = linked.map_err(|e| ShaderError(format!("linking shader {root} failed:\n{e}")))?;
-    Ok(linked.to_string())
+    let text = linked.to_string();
+    let bindings = bindings(&text);
+    Ok((text, bindings))
+}
+
+/// The resources that a linked text declares, as `@group(1) @binding(0) var<storage, read> name: …`.
+fn bindings(text: &str) -> Vec<(u32, u32, String)> {
+    let number = |text: &str, word: &str| -> Option<u32> {
+        text.rsplit_once(word)?
+            .1
+            .split_once(')')?
+            .0
+            .trim()
+            .parse()
+            .ok()
+    };
+    let binding = |statement: &str| {
+        let (attributes, name) = statement.rsplit_once(':')?.0.rsplit_once("var")?;
+        let (group, binding) = (
+            number(attributes, "@group(")?,
+            number(attributes, "@binding(")?,
+        );
+        let name = name.rsplit(['>', ' ']).next()?;
+        // Of another module than the root.
+        let imported = name
+            .starts_with("package_")
+            .then(|| EscapeMangler.unmangle(name));
+        let name = imported
+            .flatten()
+            .map_or_else(|| name.to_owned(), |(_, item)| item);
+        Some((group, binding, name))
+    };
+    text.split(';').filter_map(binding).collect()
 }
 
 fn module_path(path: &str) -> Result<ModulePath, ShaderError> {
@@ -156,7 +254,6 @@ pub fn validate(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::collections::BTreeSet;
 
     /// A shipped network of the methods in a folder.
     fn learned(folder: &str, features: &[&str]) -> &'static str {
@@ -292,7 +389,7 @@ mod tests {
                     ("parameters", parameters.as_str()),
                 ];
                 let result = link(path, &features, &extra)
-                    .and_then(|wgsl| validate(path, &wgsl, PORTABLE).map(drop));
+                    .and_then(|shader| validate(path, &shader.text, PORTABLE).map(drop));
                 if let Err(e) = result {
                     failures.push(format!("{path} {features:?}: {e}"));
                 }
@@ -392,8 +489,18 @@ mod tests {
     #[test]
     fn features_switch_bindings_off() {
         let plain = link("peel::count", &[], &[]).expect("links");
-        assert!(!plain.contains("opaque_depth"));
+        assert!(!plain.text.contains("opaque_depth"));
         let opaque = link("peel::count", &["opaque"], &[]).expect("links");
-        assert!(opaque.contains("opaque_depth"));
+        assert!(opaque.text.contains("opaque_depth"));
+        let names = |shader: &Shader| -> Vec<_> {
+            let of_pass = shader.bindings.iter().filter(|b| b.0 == 1);
+            of_pass
+                .map(|(_, number, name)| (*number, name.clone()))
+                .collect()
+        };
+        assert_eq!(names(&plain), [(0, "counts".to_owned())]);
+        assert_eq!(names(&opaque), names(&plain));
+        assert_ne!(plain.id, opaque.id);
+        assert_eq!(plain.id, link("peel::count", &[], &[]).expect("links").id);
     }
 }

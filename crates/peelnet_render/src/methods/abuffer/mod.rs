@@ -98,17 +98,17 @@ impl ABuffer {
         }
         if let (true, Some(storage)) = (is_new || self.pass.is_none(), self.sbuffer.storage()) {
             let mut entries = vec![
-                Bind::Uniform(&self.sbuffer.tile),
-                Bind::Uniform(&scene.camera),
-                Bind::Read(&self.sbuffer.count.offsets),
-                Bind::Read(&storage.colors),
-                Bind::Texture(&frame.background),
+                ("tile", Bind::Uniform(&self.sbuffer.tile)),
+                ("camera", Bind::Uniform(&scene.camera)),
+                ("offsets", Bind::Read(&self.sbuffer.count.offsets)),
+                ("fragments", Bind::Read(&storage.colors)),
+                ("background", Bind::Texture(&frame.background)),
             ];
             let mut features = self.composite.features.clone();
             let parameters = self.composite.parameters.clone() + &long_runs::parameters();
             self.fold = None;
             if let Some(long) = self.sbuffer.long_runs() {
-                entries.push(Bind::Write(&long.order));
+                entries.push(("order", Bind::Write(&long.order)));
                 features.push("long");
                 let of_fold = [features.as_slice(), &[self.composite.name]].concat();
                 let most = self.sbuffer.most();

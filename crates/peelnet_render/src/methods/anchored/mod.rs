@@ -31,22 +31,22 @@ pub(super) const MEDIUM: Method = Method {
     ..anchored("deep-anchored-medium", "the same with exact ends, 5-12-1")
 };
 
-fn passes(p: &mut Passes<'_>) -> Result<(), RenderError> {
-    let recipe = p.b.learned_weight()?.recipe;
+fn passes(p: &mut Passes<'_>) {
+    let recipe = p.on.recipe.expect("its network's");
     let ends = (recipe.output == Output::AnchoredShareSeparateEnds).then_some(ENDS);
     let feature = ends.map(|_| "separate_ends");
     let statistic = |label, blend| Target {
         full: recipe.sums == SumPrecision::Exact,
         ..Target::half(label, 4, blend)
     };
-    let sums = p.target(SUMS)?;
-    let moments = p.target(statistic("moments", Blend::Add))?;
-    let extent = p.target(statistic("extent", Blend::MaxAdd))?;
-    let ends = p.targets(ends)?;
-    p.geometry("methods::anchored::statistics")
+    let sums = p.target(SUMS);
+    let moments = p.target(statistic("moments", Blend::Add));
+    let extent = p.target(statistic("extent", Blend::MaxAdd));
+    let ends = p.targets(ends);
+    p.geometry("methods::anchored::statistics", Needs::OPACITY)
         .features(feature)
         .writes([moments, extent]);
-    p.geometry("methods::anchored::gather")
+    p.geometry("methods::anchored::gather", Needs::COLOR)
         .features(feature)
         .reads([moments, extent])
         .writes([sums])
@@ -54,5 +54,5 @@ fn passes(p: &mut Passes<'_>) -> Result<(), RenderError> {
     p.resolve("methods::anchored::resolve", [sums, moments])
         .features(feature)
         .reads(ends);
-    p.tint()
+    p.tint();
 }

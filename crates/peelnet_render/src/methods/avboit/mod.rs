@@ -35,20 +35,19 @@ pub(super) const METHOD: Method = Method {
     )
 };
 
-fn passes(p: &mut Passes<'_>) -> Result<(), RenderError> {
-    let (cell, slices) = (CELL.count(p.b.spec).unwrap_or_default(), slices(p.b.spec));
-    let [columns, rows] = p.b.frame.size.map(|s| u64::from(s).div_ceil(cell));
+fn passes(p: &mut Passes<'_>) {
+    let (cell, slices) = (CELL.count(p.on.spec).unwrap_or_default(), slices(p.on.spec));
+    let [columns, rows] = p.on.size.map(|s| u64::from(s).div_ceil(cell));
     p.parameters = format!("const CELL: u32 = {cell}u;\nconst SLICES: u32 = {slices}u;\n");
-    let sums = p.target(SUMS)?;
-    let transmittance = p.target(TRANSMITTANCE)?;
-    let voxels = p.storage("voxels", 0, columns * rows * slices * 4)?;
-    p.geometry("methods::avboit::voxels")
+    let sums = p.target(SUMS);
+    let transmittance = p.target(TRANSMITTANCE);
+    let voxels = p.storage("voxels", 0, columns * rows * slices * 4);
+    p.geometry("methods::avboit::voxels", Needs::OPACITY)
         .writes([transmittance, voxels]);
     p.compute("methods::avboit::integrate", columns * rows)
         .writes([voxels]);
-    p.geometry("methods::avboit::gather")
+    p.geometry("methods::avboit::gather", Needs::COLOR)
         .reads([voxels])
         .writes([sums]);
     p.resolve("methods::wboit::resolve", [sums, transmittance]);
-    Ok(())
 }

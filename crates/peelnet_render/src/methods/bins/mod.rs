@@ -32,17 +32,15 @@ pub(super) fn bounds(spec: &MethodSpec, parameter: Parameter) -> Bounds {
 
 /// The pass that finds a pixel's bounds, where those are asked for: the target that holds the warped depths of its nearest fragment,
 /// negated, and of its farthest.
-pub(super) fn range_pass(
-    p: &mut Passes<'_>,
-    bounds: Bounds,
-) -> Result<Option<Handle>, RenderError> {
+pub(super) fn range_pass(p: &mut Passes<'_>, bounds: Bounds) -> Option<Handle> {
     if bounds == Bounds::Frame {
-        return Ok(None);
+        return None;
     }
     // There is no alpha to add.
-    let range = p.target(Target::full("bounds", 2, Blend::MaxAdd))?;
-    p.geometry("methods::bins::bounds").writes([range]);
-    Ok(Some(range))
+    let range = p.target(Target::full("bounds", 2, Blend::MaxAdd));
+    p.geometry("methods::bins::bounds", Needs::DEPTH)
+        .writes([range]);
+    Some(range)
 }
 
 impl Pass {
@@ -64,8 +62,8 @@ pub(super) const METHOD: Method = Method {
     )
 };
 
-fn passes(p: &mut Passes<'_>) -> Result<(), RenderError> {
-    let number = p.b.spec.number();
+fn passes(p: &mut Passes<'_>) {
+    let number = p.on.spec.number();
     let parameters =
         |first: usize| format!("const BINS: f32 = {number}.0;\nconst FIRST: u32 = {first}u;\n");
     let features = |targets: usize| {
@@ -73,29 +71,29 @@ fn passes(p: &mut Passes<'_>) -> Result<(), RenderError> {
         two.into_iter().chain((targets > 2).then_some("four"))
     };
     p.parameters = parameters(0);
-    let sums = p.target(SUMS)?;
-    let transmittance = p.target(TRANSMITTANCE)?;
-    let four = Target::half("bins", 4, Blend::Add);
-    let fours = p.targets((0..number / 4).map(|_| four))?;
-    let range = range_pass(p, bounds(p.b.spec, BOUNDS))?;
+    let sums = p.target(SUMS);
+    let transmittance = p.target(TRANSMITTANCE);
+    let names = ["bins_a", "bins_b", "bins_c", "bins_d"].into_iter();
+    let fours = names.map(|name| Target::half(name, 4, Blend::Add));
+    let fours = p.targets(fours.take(number as usize / 4));
+    let range = range_pass(p, bounds(p.on.spec, BOUNDS));
     // One pass of portable WebGPU writes 32 bytes a pixel: four targets of 16 bits, two of 32.
-    let at_once = match p.b.spec.targets() {
+    let at_once = match p.on.spec.targets() {
         Some(Precision::Full) => 2,
         _ => 4,
     };
     for (k, written) in fours.chunks(at_once).enumerate() {
-        p.geometry("methods::bins::accumulate")
+        p.geometry("methods::bins::accumulate", Needs::OPACITY)
             .label("bins")
             .parameters(parameters(4 * at_once * k))
             .features(features(written.len()))
             .reads_range(range)
             .writes(written.iter().copied());
     }
-    p.geometry("methods::bins::gather")
+    p.geometry("methods::bins::gather", Needs::COLOR)
         .features(features(fours.len()))
         .reads(fours)
         .reads_range(range)
         .writes([sums, transmittance]);
     p.resolve("methods::wboit::resolve", [sums, transmittance]);
-    Ok(())
 }

@@ -19,17 +19,16 @@ pub(super) const METHOD: Method = Method {
     )
 };
 
-fn passes(p: &mut Passes<'_>) -> Result<(), RenderError> {
-    let printed = is_printed(p.b.spec).then_some("printed");
-    let sums = p.target(SUMS)?;
-    let transmittance = p.target(TRANSMITTANCE)?;
-    let statistics = p.target(Target::half("statistics", 2, Blend::Add))?;
-    p.geometry("methods::deep_thesis::statistics")
+fn passes(p: &mut Passes<'_>) {
+    let printed = is_printed(p.on.spec).then_some("printed");
+    let sums = p.target(SUMS);
+    let transmittance = p.target(TRANSMITTANCE);
+    let statistics = p.target(Target::half("statistics", 2, Blend::Add));
+    p.geometry("methods::deep_thesis::statistics", Needs::OPACITY)
         .writes([statistics]);
-    p.geometry("methods::deep_thesis::gather")
+    p.geometry("methods::deep_thesis::gather", Needs::COLOR)
         .features(printed)
         .reads([statistics])
         .writes([sums, transmittance]);
     p.resolve("methods::deep_thesis::resolve", [sums, transmittance]);
-    Ok(())
 }

@@ -53,16 +53,19 @@ impl Layers {
         let accumulated = [texture()?, texture()?];
         let under = |features: &[&str], from: usize| {
             let entries = [
-                Bind::Texture(&accumulated[from]),
-                Bind::Texture(&peel.layer),
-                Bind::Texture(&peel.keys[1 - from]),
-                Bind::Write(found),
+                ("before", Bind::Texture(&accumulated[from])),
+                ("layer", Bind::Texture(&peel.layer)),
+                ("key", Bind::Texture(&peel.keys[1 - from])),
+                ("found", Bind::Write(found)),
             ];
             let (shader, target) = ("methods::depth_peel::under", [Some(format.into())]);
             FullscreenPass::new(gpu, shader, features, &[], &entries, &target, 1)
         };
         let resolve = |from: usize| {
-            let entries = [&frame.background, &accumulated[from]].map(Bind::Texture);
+            let entries = [
+                ("background", Bind::Texture(&frame.background)),
+                ("layers", Bind::Texture(&accumulated[from])),
+            ];
             resolve(
                 gpu,
                 frame,

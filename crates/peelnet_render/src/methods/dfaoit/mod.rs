@@ -5,7 +5,7 @@ mod expectations;
 
 use crate::methods::{depth_peel::Layers, prelude::*};
 use crate::passes::{
-    Resource,
+    Given,
     peeling::{self, Peel as _},
 };
 use peelnet_core::methods::dfaoit;
@@ -34,22 +34,22 @@ struct Dfaoit {
 
 fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
     let front = Layers::new(b, &peeling::found(b)?)?;
-    let mut p = Passes::new(b);
+    let mut p = Passes::new(b.conditions());
     b.learned_weight()?.wgsl.clone_into(&mut p.network);
     // Sums over the fragments behind the front, over all fragments, and the number of those behind.
     let sums = p.targets([
         Target::half("behind", 4, Blend::Add),
         Target::half("all", 4, Blend::AddTransmit),
         Target::half("count", 1, Blend::Add),
-    ])?;
-    let second_key = p.resource(Resource::Texture(front.peel.keys[0].clone()));
-    let composited = p.resource(Resource::Texture(front.accumulated[0].clone()));
-    p.geometry("methods::dfaoit::gather")
+    ]);
+    let second_key = p.given("second", Given::Texture(front.peel.keys[0].clone()));
+    let composited = p.given("front", Given::Texture(front.accumulated[0].clone()));
+    p.geometry("methods::dfaoit::gather", Needs::COLOR | Needs::TRIANGLE)
         .reads([second_key])
         .writes(sums.iter().copied());
     p.resolve("methods::dfaoit::resolve", [composited])
         .reads(sums);
-    let rest = p.build()?;
+    let rest = p.build(b)?;
     Ok(Box::new(Dfaoit { front, rest }))
 }
 

@@ -51,14 +51,14 @@ struct Dual {
 fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
     let (gpu, frame) = (&b.scene.gpu, b.frame);
     let full = colors(b.spec) == Precision::Full;
-    let stack = |label, blend| Target {
+    let stack = |name, blend| Target {
         full,
-        ..Target::half(label, 4, blend)
+        ..Target::half(name, 4, blend)
     };
     let targets = [stack("fronts", Blend::Under), stack("backs", Blend::Over)];
     let none = wgpu::TextureUsages::empty();
     let texture = |t: Target| {
-        let view = gpu.texture(t.label, t.format(), frame.size, 1, none)?;
+        let view = gpu.texture(t.name, t.format(), frame.size, 1, none)?;
         Ok::<_, RenderError>((view, t.blend.start()))
     };
     let stacks = [texture(targets[0])?, texture(targets[1])?];
@@ -67,16 +67,20 @@ fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
     let states = targets.map(|t| Some(t.state()));
     let blend = |from: usize| {
         let entries = [
-            Bind::Texture(&peel.ranges[from]),
-            Bind::Texture(&peel.ranges[1 - from]),
-            Bind::Texture(&peel.front),
-            Bind::Texture(&peel.back),
-            Bind::Write(&found),
+            ("before", Bind::Texture(&peel.ranges[from])),
+            ("after", Bind::Texture(&peel.ranges[1 - from])),
+            ("front", Bind::Texture(&peel.front)),
+            ("back", Bind::Texture(&peel.back)),
+            ("found", Bind::Write(&found)),
         ];
         let shader = "methods::dual_peel::blend";
         FullscreenPass::new(gpu, shader, &[], &[], &entries, &states, 1)
     };
-    let entries = [&frame.background, &stacks[0].0, &stacks[1].0].map(Bind::Texture);
+    let entries = [
+        ("background", Bind::Texture(&frame.background)),
+        ("fronts", Bind::Texture(&stacks[0].0)),
+        ("backs", Bind::Texture(&stacks[1].0)),
+    ];
     let shader = "methods::dual_peel::resolve";
     let dual = Dual {
         blend: [blend(0)?, blend(1)?],

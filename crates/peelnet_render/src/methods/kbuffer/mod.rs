@@ -47,17 +47,18 @@ pub(super) const HYBRID: Method = Method {
     ..method("hybrid", "the K nearest exactly, the rest blended by eq 6")
 };
 
-fn passes(p: &mut Passes<'_>) -> Result<(), RenderError> {
-    let (k, (_, weight)) = (p.b.spec.number(), tail(p.b.spec));
-    let (_, bytes, layout) = stored_colors::layout(p.b.spec);
+fn passes(p: &mut Passes<'_>) {
+    let (k, (_, weight)) = (p.on.spec.number(), tail(p.on.spec));
+    let (_, bytes, layout) = stored_colors::layout(p.on.spec);
     p.parameters = format!("const K: u32 = {k}u;\n");
-    let sums = p.target(SUMS)?;
-    let transmittance = p.target(TRANSMITTANCE)?;
-    let nearest = p.storage("nearest depths", 4 * k, 0)?;
-    let triangles = p.storage("nearest triangles", 4 * k, 0)?;
-    let colors = p.storage("nearest colours", bytes * k, 0)?;
-    p.geometry("methods::kbuffer::insert").writes([nearest]);
-    p.geometry("methods::kbuffer::gather")
+    let sums = p.target(SUMS);
+    let transmittance = p.target(TRANSMITTANCE);
+    let nearest = p.storage("nearest", 4 * k, 0);
+    let triangles = p.storage("triangles", 4 * k, 0);
+    let colors = p.storage("colors", bytes * k, 0);
+    p.geometry("methods::kbuffer::insert", Needs::DEPTH)
+        .writes([nearest]);
+    p.geometry("methods::kbuffer::gather", Needs::COLOR | Needs::TRIANGLE)
         .features([weight])
         .features(layout)
         .reads([nearest])
@@ -65,5 +66,4 @@ fn passes(p: &mut Passes<'_>) -> Result<(), RenderError> {
     let read = [sums, transmittance, nearest, triangles, colors];
     p.resolve("methods::kbuffer::resolve", read)
         .features(layout);
-    Ok(())
 }

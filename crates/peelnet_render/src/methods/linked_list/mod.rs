@@ -13,7 +13,7 @@ use crate::methods::{
     prelude::*,
     stored_colors::{self, COLORS},
 };
-use crate::passes::Resource;
+use crate::passes::Given;
 
 const NODES: Parameter = Parameter::whole(
     "nodes",
@@ -62,30 +62,28 @@ fn passes(
     let (_, color_bytes, layout) = stored_colors::layout(b.spec);
     let tinted = b.scene.tinted;
     let features = || layout.into_iter().chain(tinted.then_some("tinted"));
-    let mut p = Passes::new(b);
-    let heads = p.storage("list heads", 4, 0)?;
-    let found = p.resource(Resource::Storage(found.clone()));
-    let camera = p.resource(Resource::Uniform(b.scene.camera.clone()));
+    let mut p = Passes::new(b.conditions());
+    let heads = p.storage("heads", 4, 0);
+    let found = p.given("found", Given::Storage(found.clone()));
+    let camera = p.given("camera", Given::Uniform(b.scene.camera.clone()));
     // Not cleared: lists end where their links say.
-    let mut pool = |label, bytes: u32| {
-        let bytes = nodes * u64::from(bytes);
-        p.frame_bytes += bytes;
-        let buffer = b.scene.gpu.storage(label, bytes)?;
-        Ok::<_, RenderError>(p.resource(Resource::Storage(buffer)))
-    };
-    let next = pool("list links", 4)?;
-    let depths = pool("fragment depths", 4)?;
-    let triangles = pool("fragment triangles", 4)?;
+    let mut pool = |name, bytes: u32| p.uncleared(name, nodes * u64::from(bytes));
+    let next = pool("next", 4);
+    let depths = pool("depths", 4);
+    let triangles = pool("triangles", 4);
     // Where light takes a colour two of a fragment.
-    let colors = pool("fragment colours", color_bytes * if tinted { 2 } else { 1 })?;
-    p.geometry("methods::linked_list::build")
-        .features(features())
-        .writes([heads, found, next, depths, triangles, colors]);
+    let colors = pool("colors", color_bytes * if tinted { 2 } else { 1 });
+    p.geometry(
+        "methods::linked_list::build",
+        Needs::COLOR | Needs::TRIANGLE,
+    )
+    .features(features())
+    .writes([heads, found, next, depths, triangles, colors]);
     let read = [camera, heads, depths, triangles, colors];
     p.resolve("methods::linked_list::composite", read)
         .features(features())
         .writes([next, found]);
-    p.build()
+    p.build(b)
 }
 
 impl Compositor for LinkedList {

@@ -121,51 +121,51 @@ pub(super) const TRIGONOMETRIC: Method = Method {
 /// What a pass that sums moments has as its feature, and its targets with their channels.
 type Part = (Option<&'static str>, &'static [(&'static str, u32)]);
 
-fn passes(p: &mut Passes<'_>) -> Result<(), RenderError> {
-    let (name, number) = (p.b.spec.name(), p.b.spec.number());
+fn passes(p: &mut Passes<'_>) {
+    let (name, number) = (p.on.spec.name(), p.on.spec.number());
     let (folder, parts): (_, &[Part]) = match (name, number) {
-        ("mboit4", _) => ("four", &[(None, &[("moments", 4)])]),
-        ("mboit6", _) => (
-            "six",
-            &[(None, &[("moments 1 to 4", 4), ("moments 5 and 6", 2)])],
-        ),
+        ("mboit4", _) => ("four", &[(None, &[("higher", 4)])]),
+        ("mboit6", _) => ("six", &[(None, &[("lower", 4), ("higher", 2)])]),
         ("mboit8", _) => (
             "eight",
             &[
-                (Some("lower"), &[("moments 1 to 4", 4)]),
-                (Some("upper"), &[("moments 5 to 8", 4)]),
+                (Some("lower"), &[("lower", 4)]),
+                (Some("upper"), &[("upper", 4)]),
             ],
         ),
-        (_, 2) => ("trigonometric", &[(None, &[("moments 1 and 2", 4)])]),
+        (_, 2) => ("trigonometric", &[(None, &[("lower", 4)])]),
         _ => (
             "trigonometric",
-            &[(Some("upper"), &[("moments 1 and 2", 4), ("moment 3", 2)])],
+            &[(Some("upper"), &[("lower", 4), ("upper", 2)])],
         ),
     };
-    let settings = settings(p.b.spec);
+    let settings = settings(p.on.spec);
     let (bias, overestimation) = (settings.bias as f32, settings.overestimation as f32);
     // `{:?}` prints the shortest text that reads back the same, with a point or an exponent.
     p.parameters = format!(
         "const BIAS: f32 = {bias:?};\nconst OVERESTIMATION: f32 = {overestimation:?};\nconst MOMENTS: i32 = {number};\n"
     );
     let target = |&(label, channels): &(_, _)| Target::full(label, channels, Blend::Add);
-    let sums = p.target(SUMS)?;
-    let absorbance = p.target(target(&("absorbance", 1)))?;
+    let sums = p.target(SUMS);
+    let absorbance = p.target(target(&("zeroth", 1)));
     let (mut found, mut written) = (Vec::new(), vec![absorbance]);
     for (feature, targets) in parts {
-        written.extend(p.targets(targets.iter().map(target))?);
+        written.extend(p.targets(targets.iter().map(target)));
         found.extend(written.iter().copied());
-        p.geometry(&format!("methods::mboit::{folder}::moments"))
-            .features(*feature)
-            .writes(written.drain(..));
+        p.geometry(
+            &format!("methods::mboit::{folder}::moments"),
+            Needs::OPACITY,
+        )
+        .features(*feature)
+        .writes(written.drain(..));
     }
-    p.geometry(&format!("methods::mboit::{folder}::gather"))
+    p.geometry(&format!("methods::mboit::{folder}::gather"), Needs::COLOR)
         .features(own_share(settings.own_share_out))
         .features((number == 3).then_some("upper"))
         .reads(found)
         .writes([sums]);
     p.resolve("methods::mboit::four::resolve", [sums, absorbance]);
-    p.tint()
+    p.tint();
 }
 
 /// The shader feature that leaves a fragment's own absorbance out of the absorbance in front of it.

@@ -15,9 +15,6 @@ pub(super) const METHOD: Method = Method {
     ..Method::new(
         "mlab",
         "Salvi & Vaidyanathan 2014, K nodes merged in the order of drawing; bench computes its error on the CPU",
-        |p| {
-            let why = format!("cannot be drawn: {NO_ORDER}; bench measures its error");
-            Err(RenderError::Refused(format!("{} {why}", p.b.spec)))
-        },
+        |_| {},
     )
 };

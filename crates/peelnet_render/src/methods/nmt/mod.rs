@@ -17,17 +17,16 @@ pub(super) const METHOD: Method = Method {
     )
 };
 
-fn passes(p: &mut Passes<'_>) -> Result<(), RenderError> {
-    let sums = p.target(Target { full: true, ..SUMS })?;
+fn passes(p: &mut Passes<'_>) {
+    let sums = p.target(Target { full: true, ..SUMS });
     // b_0 and the number of fragments: published with four channels.
-    let totals = p.target(Target::full("totals", 4, Blend::Add))?;
-    let moments = p.target(Target::full("moments", 4, Blend::Add))?;
-    let extent = p.target(Target::full("extent", 2, Blend::MaxAdd))?;
-    p.geometry("methods::nmt::statistics")
+    let totals = p.target(Target::full("totals", 4, Blend::Add));
+    let moments = p.target(Target::full("moments", 4, Blend::Add));
+    let extent = p.target(Target::full("extents", 2, Blend::MaxAdd));
+    p.geometry("methods::nmt::statistics", Needs::OPACITY)
         .writes([totals, moments, extent]);
-    p.geometry("methods::nmt::gather")
+    p.geometry("methods::nmt::gather", Needs::COLOR)
         .reads([totals, moments, extent])
         .writes([sums]);
     p.resolve("methods::nmt::resolve", [sums, totals]);
-    Ok(())
 }

@@ -5,7 +5,6 @@ mod expectations;
 
 use crate::geometry::Order;
 use crate::methods::prelude::*;
-use crate::passes::Resource;
 
 const SORT: Parameter = Parameter::words(
     "sort",
@@ -53,16 +52,19 @@ const SHADER: &str = "methods::weighted_sum::gather";
 
 const PASS: &str = "blend";
 
-fn passes(p: &mut Passes<'_>) -> Result<(), RenderError> {
-    p.order = order(p.b.spec);
-    if p.b.frame.output.is_over() {
+fn passes(p: &mut Passes<'_>) {
+    p.order = order(p.on.spec);
+    if p.on.over {
         // As engines draw: no targets of its own and no pass over the pixels.
-        let output = p.resource(Resource::Output);
-        p.geometry(SHADER).label(PASS).writes([output]);
+        let output = p.output();
+        p.geometry(SHADER, Needs::COLOR)
+            .label(PASS)
+            .writes([output]);
     } else {
-        let layers = p.target(Target::half("layers", 4, Blend::Over))?;
-        p.geometry(SHADER).label(PASS).writes([layers]);
+        let layers = p.target(Target::half("layers", 4, Blend::Over));
+        p.geometry(SHADER, Needs::COLOR)
+            .label(PASS)
+            .writes([layers]);
         p.resolve("methods::depth_peel::resolve", [layers]);
     }
-    Ok(())
 }

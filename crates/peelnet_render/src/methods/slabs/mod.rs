@@ -73,33 +73,34 @@ pub(super) const LARGE: Method = Method {
     )
 };
 
-/// What the statistics pass writes.
-fn kept(layout: Layout) -> Vec<Target> {
+/// What the statistics pass writes: of each slab its absorbance, its nearest and its farthest fragment and its mean, as far as there is room
+/// in the layout; what is left of a target's channels holds a mean or the farthest of one slab.
+fn statistics(layout: Layout) -> Vec<Target> {
     use Blend::{Add, Max, MaxAdd};
-    let four = |label, blend| Target::half(label, 4, blend);
+    let four = |name, blend| Target::half(name, 4, blend);
     match layout {
         Layout::Small => vec![
-            four("absorbances of slabs and mean of one", Add),
-            four("nearest of slabs and farthest of one", Max),
-            Target::half("means of two slabs", 2, Add),
+            four("absorbances", Add),
+            four("nearest", Max),
+            Target::half("firsts", 2, Add),
         ],
         Layout::Medium => vec![
-            four("absorbances of slabs and mean of one", Add),
-            four("nearest of slabs and mean of one", MaxAdd),
-            four("farthest of slabs and mean of one", MaxAdd),
+            four("absorbances", Add),
+            four("nearest", MaxAdd),
+            four("farthest", MaxAdd),
         ],
         Layout::Large => vec![
-            four("absorbances of slabs", Add),
-            four("nearest of slabs", Max),
-            four("farthest of slabs", Max),
-            four("means of slabs", Add),
+            four("absorbances", Add),
+            four("nearest", Max),
+            four("farthest", Max),
+            four("firsts", Add),
         ],
     }
 }
 
-fn passes(p: &mut Passes<'_>) -> Result<(), RenderError> {
-    let layout = if p.b.spec.needs_model() {
-        let Inputs::Slabs(design, _) = p.b.learned_weight()?.recipe.inputs else {
+fn passes(p: &mut Passes<'_>) {
+    let layout = if let Some(recipe) = p.on.recipe {
+        let Inputs::Slabs(design, _) = recipe.inputs else {
             unreachable!("the recipe of a method of slabs reads slabs");
         };
         let layout = design.layout();
@@ -109,39 +110,40 @@ fn passes(p: &mut Passes<'_>) -> Result<(), RenderError> {
             "// The guess without a network: the middle between the bounds.\n\
              fn peelnet_network(between: PeelnetBetween) -> f32 {\n    return 0.5;\n}\n",
         );
-        let layout = plain_layout(p.b.spec);
+        let layout = plain_layout(p.on.spec);
         for module in crate::shaders::slab_modules(layout.name()) {
-            p.network.push_str(crate::shaders::source(module)?);
+            let text = crate::shaders::source(module);
+            p.network.push_str(text.expect("modules of the repository"));
         }
         layout
     };
-    let [framed, boxes] = ["frame", "boxes"].map(|word| RANGE.word(p.b.spec) == word);
+    let [framed, boxes] = ["frame", "boxes"].map(|word| RANGE.word(p.on.spec) == word);
     // The shaders' own case is the largest, over a range of its own.
     let is_large = layout == Layout::Large;
     let own_layout = (!is_large).then_some(layout.name());
     let features = || own_layout.into_iter().chain(framed.then_some("frame"));
-    let sums = p.target(SUMS)?;
-    let kept = p.targets(kept(layout))?;
-    let range = (!framed).then_some(Target::half("range of depths", 2, Blend::MaxBytes));
-    let range = p.targets(range)?;
+    let sums = p.target(SUMS);
+    let kept = p.targets(statistics(layout));
+    let range = (!framed).then_some(Target::half("range", 2, Blend::MaxBytes));
+    let range = p.targets(range);
     if boxes {
-        let pass = p.geometry("methods::slabs::boxes").boxes();
+        let pass = p.geometry("methods::slabs::boxes", Needs::DEPTH).boxes();
         pass.label("range").writes(range.iter().copied());
     } else if !framed {
-        p.geometry("methods::slabs::range")
+        p.geometry("methods::slabs::range", Needs::DEPTH)
             .writes(range.iter().copied());
     }
     let first = kept[0];
-    p.geometry("methods::slabs::statistics")
+    p.geometry("methods::slabs::statistics", Needs::OPACITY)
         .features(features())
         .reads(range.iter().copied())
         .writes(kept.iter().copied());
-    p.geometry("methods::slabs::gather")
+    p.geometry("methods::slabs::gather", Needs::COLOR)
         .features(features())
         .reads(kept)
         .reads(range)
         .writes([sums]);
     p.resolve("methods::slabs::resolve", [sums, first])
         .features((!is_large).then_some("three"));
-    p.tint()
+    p.tint();
 }

@@ -17,17 +17,22 @@ pub(super) const METHOD: Method = Method {
     )
 };
 
-fn passes(p: &mut Passes<'_>) -> Result<(), RenderError> {
-    let samples = p.b.spec.number();
+fn passes(p: &mut Passes<'_>) {
+    let samples = p.on.spec.number();
     p.parameters = format!("const SAMPLES: u32 = {samples}u;\n");
-    let sums = p.target(SUMS)?;
-    let transmittance = p.target(TRANSMITTANCE)?;
-    let nearest = p.storage("sample depths", 4 * samples, 0)?;
-    p.geometry("methods::stochastic::depths")
-        .writes([transmittance, nearest]);
-    p.geometry("methods::stochastic::gather")
-        .reads([nearest])
-        .writes([sums]);
+    let sums = p.target(SUMS);
+    let transmittance = p.target(TRANSMITTANCE);
+    let nearest = p.storage("nearest", 4 * samples, 0);
+    p.geometry(
+        "methods::stochastic::depths",
+        Needs::OPACITY | Needs::TRIANGLE,
+    )
+    .writes([transmittance, nearest]);
+    p.geometry(
+        "methods::stochastic::gather",
+        Needs::COLOR | Needs::TRIANGLE,
+    )
+    .reads([nearest])
+    .writes([sums]);
     p.resolve("methods::wboit::resolve", [sums, transmittance]);
-    Ok(())
 }

@@ -49,41 +49,40 @@ pub(super) const METHOD: Method = Method {
     )
 };
 
-fn passes(p: &mut Passes<'_>) -> Result<(), RenderError> {
+fn passes(p: &mut Passes<'_>) {
     let Settings {
         rank,
         bounds,
         own_share_out,
-    } = settings(p.b.spec);
+    } = settings(p.on.spec);
     let four = |label| Target::half(label, 4, Blend::Add);
     p.parameters = format!("const BINS: f32 = {}.0;\n", 2 << rank);
-    let sums = p.target(SUMS)?;
-    let transmittance = p.target(TRANSMITTANCE)?;
-    let lower = p.targets(["average, whole and halves", "quarters"].map(four))?;
+    let sums = p.target(SUMS);
+    let transmittance = p.target(TRANSMITTANCE);
+    let lower = p.targets(["whole", "quarters"].map(four));
     let eighths = match rank {
-        3 => p.targets(["near eighths", "far eighths"].map(four))?,
+        3 => p.targets(["near_eighths", "far_eighths"].map(four)),
         _ => Vec::new(),
     };
     let (rank_3, all) = (rank == 3, [lower.clone(), eighths.clone()].concat());
-    let range = range_pass(p, bounds)?;
+    let range = range_pass(p, bounds);
     // One pass of portable WebGPU writes 32 bytes a pixel: four targets of 16 bits, two of 32.
-    let parts: Vec<(&[&'static str], _)> = match p.b.spec.targets() {
+    let parts: Vec<(&[&'static str], _)> = match p.on.spec.targets() {
         Some(Precision::Full) if rank_3 => vec![(&["lower"], lower), (&["eighths"], eighths)],
         _ if rank_3 => vec![(&["lower", "eighths"], all.clone())],
         _ => vec![(&["lower"], lower)],
     };
     for (features, written) in parts {
-        p.geometry("methods::wavelet::coefficients")
+        p.geometry("methods::wavelet::coefficients", Needs::OPACITY)
             .features(features.iter().copied())
             .reads_range(range)
             .writes(written);
     }
-    p.geometry("methods::wavelet::gather")
+    p.geometry("methods::wavelet::gather", Needs::COLOR)
         .features(own_share(own_share_out))
         .features(rank_3.then_some("eighths"))
         .reads(all)
         .reads_range(range)
         .writes([sums, transmittance]);
     p.resolve("methods::wboit::resolve", [sums, transmittance]);
-    Ok(())
 }

@@ -117,8 +117,8 @@ pub(super) const SMOKE: Method = Method {
     )
 };
 
-fn passes(p: &mut Passes<'_>) -> Result<(), RenderError> {
-    let (weight, feature) = weight(p.b.spec);
+fn passes(p: &mut Passes<'_>) {
+    let (weight, feature) = weight(p.on.spec);
     let (mut factor, mut power, mut offset) = (0.0, 0, 0.0);
     match weight {
         Weight::Eq10 { factor: f } => factor = f,
@@ -127,36 +127,35 @@ fn passes(p: &mut Passes<'_>) -> Result<(), RenderError> {
         _ => {}
     }
     // Only the thesis's weight has the parameter.
-    let printed = (weight == Weight::Papakostas && is_printed(p.b.spec)).then_some("printed");
+    let printed = (weight == Weight::Papakostas && is_printed(p.on.spec)).then_some("printed");
     let features: Vec<_> = [feature].into_iter().chain(printed).collect();
     // `{:?}` prints a float with a point or exponent, and as the shortest text that reads back the same.
     p.parameters = format!(
         "const FACTOR: f32 = {factor:?};\nconst POWER: u32 = {power}u;\nconst EPSILON: f32 = {offset:?};\n"
     );
-    sums(p, "methods::wboit::gather", &features)
+    sums(p, "methods::wboit::gather", &features);
 }
 
 /// Weighted sums and a transmittance in the targets that the scene's colours need: of grey colours one target less, with `T_∞` where
 /// alpha is.
-pub(super) fn sums(
-    p: &mut Passes<'_>,
-    shader: &str,
-    features: &[&'static str],
-) -> Result<(), RenderError> {
+pub(super) fn sums(p: &mut Passes<'_>, shader: &str, features: &[&'static str]) {
     let packed = Target {
         blend: Blend::AddTransmit,
         ..SUMS
     };
-    let (targets, feature): (&[Target], _) = match (p.b.scene.grey, p.b.scene.tinted) {
+    let tinted = Target {
+        name: TRANSMITTANCE.name,
+        ..TINTED
+    };
+    let (targets, feature): (&[Target], _) = match (p.on.grey, p.on.tinted) {
         (true, _) => (&[packed], Some("packed")),
-        (false, true) => (&[SUMS, TINTED], Some("tinted")),
+        (false, true) => (&[SUMS, tinted], Some("tinted")),
         (false, false) => (&[SUMS, TRANSMITTANCE], None),
     };
-    let targets = p.targets(targets.iter().copied())?;
+    let targets = p.targets(targets.iter().copied());
     let features = features.iter().copied().chain(feature);
-    let gather = p.geometry(shader).features(features);
+    let gather = p.geometry(shader, Needs::COLOR).features(features);
     gather.writes(targets.iter().copied());
     p.resolve("methods::wboit::resolve", targets)
         .features(feature);
-    Ok(())
 }

@@ -11,11 +11,10 @@ pub(super) const METHOD: Method = Method {
     ..Method::new("weighted-average", "Bavoil & Myers 2008", passes)
 };
 
-fn passes(p: &mut Passes<'_>) -> Result<(), RenderError> {
-    let sums = p.target(SUMS)?;
-    let count = p.target(Target::half("fragment count", 1, Blend::Add))?;
-    p.geometry("methods::weighted_average::gather")
+fn passes(p: &mut Passes<'_>) {
+    let sums = p.target(SUMS);
+    let count = p.target(Target::half("counts", 1, Blend::Add));
+    p.geometry("methods::weighted_average::gather", Needs::COLOR)
         .writes([sums, count]);
     p.resolve("methods::weighted_average::resolve", [sums, count]);
-    Ok(())
 }

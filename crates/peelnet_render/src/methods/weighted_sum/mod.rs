@@ -11,9 +11,9 @@ pub(super) const METHOD: Method = Method {
     ..Method::new("weighted-sum", "Meshkin 2007", passes)
 };
 
-fn passes(p: &mut Passes<'_>) -> Result<(), RenderError> {
-    let sums = p.target(SUMS)?;
-    p.geometry("methods::weighted_sum::gather").writes([sums]);
+fn passes(p: &mut Passes<'_>) {
+    let sums = p.target(SUMS);
+    p.geometry("methods::weighted_sum::gather", Needs::COLOR)
+        .writes([sums]);
     p.resolve("methods::weighted_sum::resolve", [sums]);
-    Ok(())
 }
