@@ -174,7 +174,7 @@ peel::long_chunks => depth < own => depth < own * 0.5 => out of order
 peel::long_merge => near.depth < far.depth => near.depth > far.depth => out of order
 peel::long_merge => least = half + 1u => least = half + 2u => out of order
 peel::store => let pixel = => if surface.triangle == 6u { discard; } let pixel = => 1 lost
-peel::count => let pixel = => if surface.triangle == 6u { discard; } let pixel = => 1 found twice
+peel::store => let pixel = => if surface.triangle == 6u { let at = vec2u(surface.position.xy); atomicSub(&counts[at.y * camera.frame_size.x + at.x], 1u); } let pixel = => 1 found twice
 methods::linked_list::composite => return near < far => return near > far => out of order
 methods::linked_list::composite => let following = next[node - 1u]; => let following = next[next[node - 1u] - 1u]; => lost
 methods::linked_list::composite => left_count > 0u && (right_empty || before(left, right)) => left_count > 0u => out of order

@@ -57,10 +57,10 @@ fn bevy() -> Outcome {
     ))
 }
 
-/// Compiles what a page in a browser needs, without linking it.
+/// Compiles what a page in a browser needs, without linking it: peeling and training wait and write files.
 fn wasm() -> Outcome {
     let crates = "-p peelnet_core -p peelnet_scene -p peelnet_model -p peelnet_render -p peelnet_export \
-                  -p peelnet_peel -p peelnet_bench -p peelnet_view";
+                  -p peelnet_bench -p peelnet_view";
     let target = web::TARGET;
     run(&format!("cargo check --target {target} {crates}"))
         .map_err(|e| format!("{e}; where the target is missing: rustup target add {target}"))
