@@ -7,8 +7,9 @@ use peelnet_render::geometry::{
     FrameTargets, PixelSample, SamplePoint, SceneBuffers,
     count::{CountPass, FragmentCount},
     dual::DualPeel,
+    fragments::Tile,
     frame::Output,
-    sbuffer::{SBuffer, Tile},
+    sbuffer::SBuffer,
     single::SinglePeel,
 };
 use peelnet_render::gpu::{

@@ -2,10 +2,10 @@
 
 use crate::geometry::{
     FrameTargets, GeometryPass, GeometryPipelines, Needs, RenderError, SceneBuffers,
-    frame::attachment,
+    frame::{unwritten_attachment, unwritten_texture},
     long_runs::{self, kernel},
 };
-use crate::gpu::{Gpu, Kernel, bind::Bind, groups_2d, record::Recorder, wgpu};
+use crate::gpu::{Kernel, bind::Bind, groups_2d, record::Recorder, wgpu};
 
 /// Pixels of one block of the prefix sum; `BLOCK` in `peel/scan_blocks.wgsl`.
 const BLOCK: u32 = 256;
@@ -153,25 +153,4 @@ impl CountPass {
     pub fn attachment(&self) -> Option<wgpu::RenderPassColorAttachment<'_>> {
         unwritten_attachment(&self.attachment)
     }
-}
-
-/// Format of the attachment of passes that write storage alone: WebGPU wants one.
-pub(crate) const UNWRITTEN: wgpu::TextureFormat = wgpu::TextureFormat::R8Unorm;
-
-/// That attachment's texture, a byte a pixel.
-pub fn unwritten_texture(
-    gpu: &Gpu,
-    frame: &FrameTargets,
-) -> Result<wgpu::TextureView, RenderError> {
-    let none = wgpu::TextureUsages::empty();
-    Ok(gpu.texture("no attachment", UNWRITTEN, frame.size, 1, none)?)
-}
-
-/// The attachment, cleared and not stored.
-pub fn unwritten_attachment(
-    view: &wgpu::TextureView,
-) -> Option<wgpu::RenderPassColorAttachment<'_>> {
-    let mut cleared = attachment(view, wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT))?;
-    cleared.ops.store = wgpu::StoreOp::Discard;
-    Some(cleared)
 }

@@ -1,7 +1,7 @@
 //! The targets of one frame size, and where the finished picture goes.
 
 use crate::geometry::{GeometryPipelines, RenderError, SceneBuffers};
-use crate::gpu::{bind::Bound, wgpu};
+use crate::gpu::{Gpu, bind::Bound, wgpu};
 
 /// Where the finished picture goes, as pipelines need to know it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -220,4 +220,25 @@ pub fn attachment(
             store: wgpu::StoreOp::Store,
         },
     })
+}
+
+/// Format of the attachment of passes that write storage alone: WebGPU wants one.
+pub(crate) const UNWRITTEN: wgpu::TextureFormat = wgpu::TextureFormat::R8Unorm;
+
+/// That attachment's texture, a byte a pixel.
+pub fn unwritten_texture(
+    gpu: &Gpu,
+    frame: &FrameTargets,
+) -> Result<wgpu::TextureView, RenderError> {
+    let none = wgpu::TextureUsages::empty();
+    Ok(gpu.texture("no attachment", UNWRITTEN, frame.size, 1, none)?)
+}
+
+/// The attachment, cleared and not stored.
+pub fn unwritten_attachment(
+    view: &wgpu::TextureView,
+) -> Option<wgpu::RenderPassColorAttachment<'_>> {
+    let mut cleared = attachment(view, wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT))?;
+    cleared.ops.store = wgpu::StoreOp::Discard;
+    Some(cleared)
 }

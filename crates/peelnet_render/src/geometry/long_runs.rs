@@ -5,7 +5,7 @@
 
 use crate::geometry::{
     RenderError,
-    sbuffer::{FragmentStorage, Tile},
+    fragments::{FragmentStorage, Tile},
 };
 use crate::gpu::{
     Gpu, Kernel,

@@ -1,6 +1,6 @@
 use crate::geometry::{
     FrameTargets, RenderError, SceneBuffers,
-    count::UNWRITTEN,
+    frame::UNWRITTEN,
     needs::{self, Needs},
     upload::{ATTRIBUTES, Vertex},
 };

@@ -2,7 +2,6 @@
 
 use crate::geometry::{
     FrameTargets, GeometryPass, GeometryPipelines, PixelSample, RenderError, SamplePoint,
-    Submission,
     frame::{OpaqueDepth, attachment, clear_color, depth_attachment, depth_state},
     maps::MapSets,
     uniforms::{CameraUniform, MaterialData, unit_from_depth},
@@ -17,6 +16,18 @@ use crate::gpu::{
 use bytemuck::Zeroable;
 use peelnet_core::absorbance::DepthWarp;
 use peelnet_scene::{Camera, Scene, Setting, Variant};
+
+/// The order in which the transparent parts of objects are submitted to the GPU. Depths, numbers of triangles and everything that is
+/// computed of them stay as they are: only what depends on the order of drawing may change.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Submission {
+    /// In the scene's order.
+    Listed,
+    /// The last first.
+    Reversed,
+    /// By a hash of their places and this seed.
+    Shuffled(u32),
+}
 
 /// A part of an object with one material, on the GPU.
 #[derive(Clone, Debug)]

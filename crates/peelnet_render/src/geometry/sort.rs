@@ -17,18 +17,6 @@ pub enum Order {
     Triangles,
 }
 
-/// The order in which the transparent parts of objects are submitted to the GPU. Depths, numbers of triangles and everything that is
-/// computed of them stay as they are: only what depends on the order of drawing may change.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Submission {
-    /// In the scene's order.
-    Listed,
-    /// The last first.
-    Reversed,
-    /// By a hash of their places and this seed.
-    Shuffled(u32),
-}
-
 /// The transparent surfaces in an order that depends on the view.
 #[derive(Debug)]
 pub struct Sorted {

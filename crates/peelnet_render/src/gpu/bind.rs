@@ -1,6 +1,6 @@
 //! A bind group and its layout from one list, so that the two cannot disagree.
 
-use crate::gpu::Gpu;
+use crate::gpu::{Gpu, cache::Layout};
 use crate::shaders::{Shader, ShaderError};
 
 /// One resource; its place in the list is its binding number.
@@ -21,9 +21,6 @@ pub enum Bind<'a> {
     /// Nothing: this shader has no such binding.
     None,
 }
-
-/// Entries of a bind group's layout.
-pub type Layout = Vec<wgpu::BindGroupLayoutEntry>;
 
 /// A layout with one group that fits it.
 #[derive(Clone, Debug)]

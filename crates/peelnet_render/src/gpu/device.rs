@@ -1,7 +1,7 @@
 use crate::gpu::{
     AdapterRequest, GpuError, OptionalFeature,
     adapter::{self, OPTIONAL_FEATURES},
-    pipelines::PipelineCache,
+    cache::PipelineCache,
 };
 use crate::shaders::Shader;
 use std::{

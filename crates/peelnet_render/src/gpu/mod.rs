@@ -7,6 +7,7 @@
 
 pub mod adapter;
 pub mod bind;
+pub mod cache;
 mod device;
 mod error;
 mod pipelines;

@@ -1,31 +1,13 @@
-//! Compiled pipelines, kept by all that decides them: a resize, a second scene or a second method compiles none anew.
+//! Pipelines, compiled where they are not in the cache.
 
 use crate::gpu::{
     Gpu,
-    bind::{Bind, Bound, Layout},
+    bind::{Bind, Bound},
+    cache::RenderKey,
     device::locked,
     record::Recorder,
 };
-use crate::shaders::{Shader, ShaderId};
-use std::{collections::HashMap, sync::Mutex};
-
-#[derive(Debug, Default)]
-pub(crate) struct PipelineCache {
-    render: Mutex<HashMap<RenderKey, wgpu::RenderPipeline>>,
-    compute: Mutex<HashMap<(ShaderId, Layout), wgpu::ComputePipeline>>,
-}
-
-/// All that decides a render pipeline.
-#[derive(Clone, Debug, PartialEq, Eq, Hash)]
-struct RenderKey {
-    shaders: [ShaderId; 2],
-    layouts: Vec<Option<Layout>>,
-    buffers: Vec<Option<(u64, wgpu::VertexStepMode, Vec<wgpu::VertexAttribute>)>>,
-    targets: Vec<Option<wgpu::ColorTargetState>>,
-    depth: Option<wgpu::DepthStencilState>,
-    samples: u32,
-    culled: Option<wgpu::Face>,
-}
+use crate::shaders::Shader;
 
 /// A compute shader, whose entry point is `main`, with its bindings.
 #[derive(Debug)]

@@ -17,6 +17,7 @@ pub(crate) mod expectations;
 pub mod kbuffer;
 mod learned;
 mod linked_list;
+mod lookup;
 mod mboit;
 pub(crate) mod method;
 pub mod mlab;

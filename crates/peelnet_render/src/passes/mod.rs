@@ -12,8 +12,7 @@ pub mod views;
 use crate::RenderError;
 use crate::geometry::{
     Blend, BoxPass, GeometryPass, GeometryPipelines, Needs, Order, Sorted,
-    count::{unwritten_attachment, unwritten_texture},
-    frame::clear_color,
+    frame::{clear_color, unwritten_attachment, unwritten_texture},
     fullscreen::FullscreenPass,
 };
 use crate::gpu::{

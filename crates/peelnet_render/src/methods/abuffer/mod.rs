@@ -7,9 +7,10 @@ mod expectations;
 use crate::geometry::{
     FrameTargets, SceneBuffers,
     count::{CountPass, FragmentCount},
+    fragments::Tile,
     fullscreen::FullscreenPass,
     long_runs::{self, Fold},
-    sbuffer::{SBuffer, Tile},
+    sbuffer::SBuffer,
 };
 use crate::gpu::{bind::Bind, wgpu};
 use crate::methods::prelude::*;
