@@ -185,7 +185,7 @@ impl Plan {
     pub(crate) fn manifest(&self, mut parts: Vec<Part>) -> Manifest {
         parts.sort_by_key(|p| p.index);
         // Records come from outside, with any numbers in them.
-        let sum = |of: fn(&Part) -> u64| parts.iter().map(of).fold(0, u64::saturating_add);
+        let sum = |count: fn(&Part) -> u64| parts.iter().map(count).fold(0, u64::saturating_add);
         let header = self.header.clone();
         Manifest {
             schema: self.schema,

@@ -112,7 +112,7 @@ impl Summary {
     /// # Errors
     /// If a file cannot be read or a value is out of range. Rows that contradict one another are no error but
     /// [`Summary::violations`].
-    pub fn of(dataset: &Dataset) -> Result<Self, DatasetError> {
+    pub fn from_dataset(dataset: &Dataset) -> Result<Self, DatasetError> {
         let mut summary = Self::empty(dataset.manifest());
         for part in &dataset.manifest().parts {
             let mut row = 1;

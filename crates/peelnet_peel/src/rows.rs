@@ -15,7 +15,7 @@ pub struct RawTile {
     /// Un-premultiplied linear radiance and alpha.
     pub colors: Vec<[f32; 4]>,
     /// Indices in the scene's list of triangles, which is the order of drawing; empty unless asked for, see
-    /// [`Harvester::keep_triangles`](crate::harvest::Harvester::keep_triangles).
+    /// [`FragmentReader::keep_triangles`](crate::read_back::FragmentReader::keep_triangles).
     pub triangles: Vec<u32>,
 }
 

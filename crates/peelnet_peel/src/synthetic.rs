@@ -9,7 +9,7 @@
 use crate::{
     ExtractOptions, ExtractReport, PeelError, Progress,
     extract::{Message, Outbox, write},
-    harvest::Harvest,
+    read_back::ReadBack,
     rows::RawTile,
 };
 use peelnet_core::random::Random;
@@ -225,7 +225,7 @@ fn make(seed: u64, index: u32, lists: u64, outbox: &Outbox) -> Result<(), PeelEr
         ..Part::default()
     }))?;
     outbox.tile(&mut tile)?;
-    outbox.deliver(Message::End(Harvest::default()))
+    outbox.deliver(Message::End(ReadBack::default()))
 }
 
 /// A tile of a world's lists, sorted, and clip distances around them.

@@ -106,7 +106,7 @@ fn sums_are_checked() {
     let folder = temporary();
     write(folder.path(), Format::Parquet).unwrap();
     let dataset = Dataset::open(folder.path()).unwrap();
-    let summary = Summary::of(&dataset).unwrap();
+    let summary = Summary::from_dataset(&dataset).unwrap();
     assert!(summary.passes(), "{:?}", summary.violations);
     assert_eq!(summary.rows, dataset.rows());
     assert_eq!(summary.pixels, dataset.manifest().pixels);
@@ -132,7 +132,7 @@ fn sums_are_checked() {
         let i = (0..rows.len()).find(is_second).unwrap();
         spoil(&mut rows, i);
         write_one(folder.path(), Format::Npy, &rows, 1000);
-        let summary = Summary::of(&Dataset::open(folder.path()).unwrap()).unwrap();
+        let summary = Summary::from_dataset(&Dataset::open(folder.path()).unwrap()).unwrap();
         let found = summary.violations.iter();
         let found: Vec<_> = found.map(|v| (v.check.as_str(), v.row)).collect();
         assert_eq!(found, [(name, i as u64 + 1)]);

@@ -74,7 +74,7 @@ enum Peeler {
 
 /// A scene made ready for peeling at one frame size.
 #[derive(Debug)]
-pub struct Harvester {
+pub struct FragmentReader {
     gpu: Gpu,
     scene: SceneBuffers,
     frame: FrameTargets,
@@ -90,7 +90,7 @@ pub struct Harvester {
 
 /// What was found in one view.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Harvest {
+pub struct ReadBack {
     /// Fragments of its fullest pixel.
     pub max_layers: u32,
     /// Tiles it took.
@@ -99,7 +99,7 @@ pub struct Harvest {
     pub gpu_micros: f64,
 }
 
-impl Harvester {
+impl FragmentReader {
     /// Uploads a scene. `sampled` if views will be given a real [`PixelSample`]; `budget` bounds a tile's fragments.
     ///
     /// # Errors
@@ -153,17 +153,17 @@ impl Harvester {
     }
 
     /// Finds a view's fragments and hands each tile over. `ready` may take it, and leave another whose memory is used, and it may end the
-    /// harvest by an error.
+    /// reading by an error.
     ///
     /// # Errors
     /// A lost device, a pixel beyond the budget, or what `ready` returns.
-    pub fn harvest(
+    pub fn read_view(
         &mut self,
         camera: &Camera,
         sample: PixelSample,
         max_passes: Option<u32>,
         mut ready: impl FnMut(&mut RawTile) -> Result<(), PeelError>,
-    ) -> Result<Harvest, PeelError> {
+    ) -> Result<ReadBack, PeelError> {
         // Handles, so that storage can be planned while it records.
         let (gpu, mut raw) = (&self.gpu.clone(), std::mem::take(&mut self.tile));
         let (mut encoder, mut timer) = (gpu.encoder(), Timer::new(gpu));
@@ -202,7 +202,7 @@ impl Harvester {
         let times = timer.finish(gpu, &mut encoder);
         gpu.queue.submit([encoder.finish()]);
         let times = gpu.block_on(times)?;
-        Ok(Harvest {
+        Ok(ReadBack {
             max_layers: found.most,
             tiles: tiles.len() as u32,
             gpu_micros: times.iter().map(|t| t.micros).sum(),
