@@ -12,14 +12,14 @@ use std::time::Duration;
 use peelnet_core::files::Unfinished;
 
 use crate::error::DatasetError;
-use crate::formats::hash_file;
+use crate::hash::hash_file;
 use crate::manifest::Manifest;
 use crate::parts::{PartRecord, part_of_file};
 use crate::plan::{Plan, host};
-use crate::store::{FRAGMENTS, Folder, MANIFEST, META, PARTS, PLAN, is_absent, names_in, store_at};
+use crate::store::{
+    FRAGMENTS, Folder, MANIFEST, META, PARTIAL, PARTS, PLAN, is_absent, names_in, store_at,
+};
 
-/// Prefix of what a writer has in `_peelnet/` until it is finished: a hidden folder with parts, and small files.
-pub(crate) const PARTIAL: &str = ".partial-";
 /// A file in the hidden folder that its writer holds locked, with its machine's name. It is created first and removed last.
 const LOCK: &str = "lock";
 

@@ -46,6 +46,7 @@ mod column;
 mod error;
 mod folder;
 mod formats;
+mod hash;
 mod manifest;
 mod parts;
 mod plan;
@@ -58,7 +59,8 @@ mod writer;
 pub use column::{Column, ColumnKind, ColumnSlice, FragmentBatch};
 pub use error::DatasetError;
 pub use folder::replaces;
-pub use formats::{Format, ROW_GROUP_ROWS, sha256};
+pub use formats::{Format, ROW_GROUP_ROWS};
+pub use hash::sha256;
 pub use manifest::{
     CameraInfo, ColumnEntry, FileEntry, MAX_WORK_ITEMS, Manifest, Part, SCHEMA_VERSION, SceneEntry,
 };

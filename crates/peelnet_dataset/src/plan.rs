@@ -11,7 +11,8 @@ use std::str::FromStr;
 use serde::{Deserialize, Serialize};
 
 use crate::error::DatasetError;
-use crate::formats::{Format, sha256};
+use crate::formats::Format;
+use crate::hash::sha256;
 use crate::manifest::{
     EXTRACT_AGAIN, MAX_WORK_ITEMS, Manifest, Part, SCHEMA_VERSION, SceneEntry, columns,
     hash_of_parts, read_json, to_json,

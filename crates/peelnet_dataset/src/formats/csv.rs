@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
 
-use super::{PartSink, PartSource, check_names};
+use super::part_file::{PartSink, PartSource, check_names};
 use crate::column::{Column, ColumnMut, ColumnSlice, FragmentBatch};
 use crate::error::DatasetError;
 use crate::store::Fetched;
