@@ -1,5 +1,8 @@
 use peelnet_core::fragment::Fragment;
-use peelnet_peel::{Peel, read_back::FragmentReader, rows::RawTile};
+use peelnet_peel::{
+    Peel,
+    read_back::{FragmentReader, RawTile},
+};
 use peelnet_render::gpu::{Gpu, GpuError};
 use peelnet_render::{MethodOptions, MethodSpec, PixelSample, RenderError, Renderer};
 use peelnet_tests::{frame, gpu, prepare, walls};

@@ -3,7 +3,10 @@
 use glam::Vec3;
 use peelnet_bench::stress::judge::clip_triangles;
 use peelnet_core::{hash, random::Random, scanline, tolerance::UNIT_ROUNDOFF};
-use peelnet_peel::{Peel, read_back::FragmentReader, rows::RawTile};
+use peelnet_peel::{
+    Peel,
+    read_back::{FragmentReader, RawTile},
+};
 use peelnet_render::gpu::Gpu;
 use peelnet_render::{PixelSample, Renderer};
 use peelnet_scene::{Material, Scene};

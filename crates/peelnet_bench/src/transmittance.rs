@@ -9,7 +9,10 @@ use peelnet_core::{
     absorbance::DepthWarp, fragment::Fragment, hash::sample_threshold, methods::over,
 };
 use peelnet_model::Model;
-use peelnet_peel::{Peel, read_back::FragmentReader, rows::RawTile};
+use peelnet_peel::{
+    Peel,
+    read_back::{FragmentReader, RawTile},
+};
 use peelnet_render::gpu::Gpu;
 use peelnet_render::{Frame, FrameStats, Image, MethodSpec, PixelSample, methods::Pixel};
 use peelnet_scene::{Camera, Scene};

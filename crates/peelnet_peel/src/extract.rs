@@ -3,8 +3,8 @@
 use crate::{
     PeelError,
     items::{camera_info, items},
-    read_back::{FragmentReader, Peel, ReadBack},
-    rows::{RawTile, RowCounts, make_rows},
+    read_back::{FragmentReader, Peel, RawTile, ReadBack},
+    rows::{RowCounts, make_rows},
 };
 use peelnet_core::files::thousands;
 use peelnet_dataset::{
@@ -198,7 +198,7 @@ pub(crate) fn stream(
         let taken = take(Feed {
             messages,
             give_back,
-            batch: FragmentBatch::with_capacity(ROWS_AT_A_TIME + 4096),
+            batch: FragmentBatch::default(),
         });
         let ended = making.join();
         match ended.unwrap_or_else(|panic| std::panic::resume_unwind(panic)) {

@@ -1,8 +1,9 @@
 //! Finds all fragments of a view, tile by tile, in one of three ways that leave the same runs in storage.
 
-use crate::{PeelError, rows::RawTile};
+use crate::PeelError;
 use bytemuck::{Pod, Zeroable};
 use peelnet_core::absorbance::DepthWarp;
+use peelnet_dataset::PeeledFragment;
 use peelnet_render::geometry::{
     FrameTargets, PixelSample, SamplePoint, SceneBuffers,
     count::{CountPass, FragmentCount},
@@ -53,6 +54,32 @@ impl FromStr for Peel {
 impl fmt::Display for Peel {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(Self::NAMES[*self as usize].1)
+    }
+}
+
+/// What a tile left in GPU storage, read back.
+#[derive(Debug, Default)]
+pub struct RawTile {
+    /// Row-major index of the first pixel.
+    pub first_pixel: u32,
+    /// First fragment of each pixel and the total, counted from the tile's first fragment.
+    pub offsets: Vec<u32>,
+    /// Linear depths; 0 in a slot that peeling left empty.
+    pub depths: Vec<f32>,
+    /// Un-premultiplied linear radiance and alpha.
+    pub colors: Vec<[f32; 4]>,
+    /// Indices in the scene's list of triangles, which is the order of drawing; empty unless asked for, see
+    /// [`FragmentReader::keep_triangles`].
+    pub triangles: Vec<u32>,
+}
+
+impl RawTile {
+    /// The fragment in a slot, as rows say it.
+    pub(crate) fn fragment(&self, slot: usize) -> PeeledFragment {
+        PeeledFragment {
+            depth: self.depths[slot],
+            color: self.colors[slot],
+        }
     }
 }
 

@@ -9,8 +9,7 @@
 use crate::{
     ExtractOptions, ExtractReport, PeelError, Progress,
     extract::{Message, Outbox, write},
-    read_back::ReadBack,
-    rows::RawTile,
+    read_back::{RawTile, ReadBack},
 };
 use peelnet_core::random::Random;
 use peelnet_dataset::{CameraInfo, Header, MAX_WORK_ITEMS, Part, SceneEntry, worker_name};
