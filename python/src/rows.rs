@@ -18,7 +18,7 @@ use numpy::{Element, IntoPyArray as _};
 use peelnet::{
     Failure, Gpu,
     dataset::{self, Column, ColumnKind, ColumnValues, FragmentBatch},
-    extract::{self, ExtractOptions, ExtractReport, PeelError, Progress, items},
+    peel::{self, ExtractOptions, ExtractReport, PeelError, Progress, items},
 };
 use peelnet_core::files::{counted, thousands};
 use pyo3::{
@@ -248,7 +248,7 @@ fn in_memory(
             seconds: start.elapsed().as_secs_f64(),
         });
     };
-    for batch in extract::batches(gpu, scenes, options)? {
+    for batch in peel::batches(gpu, scenes, options)? {
         if stop.load(Ordering::Relaxed) {
             return Err(PeelError::Interrupted.into());
         }
@@ -341,7 +341,7 @@ pub fn extract_rows<'py>(
                 return in_memory(&gpu, &scenes, &options, stop, reporter).map(Done::Rows);
             }
             let mut say = |p: &Progress| reporter.say(*p);
-            let report = extract::extract(&gpu, &scenes, &options, stop, &mut say)?;
+            let report = peel::extract(&gpu, &scenes, &options, stop, &mut say)?;
             Ok(Done::Folder(Box::new(report)))
         },
         |_, progress| {
