@@ -17,8 +17,8 @@ use peelnet::{
         compare::Plan,
         front::Point,
         recommend::{Budget, judged},
+        report::Results,
     },
-    report::Results,
 };
 use pyo3::prelude::*;
 use std::path::PathBuf;

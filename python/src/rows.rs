@@ -17,8 +17,8 @@ use arrow_array::{
 use numpy::{Element, IntoPyArray as _};
 use peelnet::{
     Failure, Gpu,
-    dataset::{self, Column, ColumnKind, FragmentBatch},
-    extract::{self, ExtractOptions, ExtractReport, PeelError, Progress, items},
+    dataset::{self, Column, ColumnKind, ColumnValues, FragmentBatch},
+    peel::{self, ExtractOptions, ExtractReport, PeelError, Progress, items},
 };
 use peelnet_core::files::{counted, thousands};
 use pyo3::{
@@ -34,14 +34,12 @@ use std::{
     time::Instant,
 };
 
-/// Rows of fragments in memory: fourteen columns, whole pixels from the nearest fragment to the farthest.
+/// Rows of fragments in memory: whole pixels from the nearest fragment to the farthest.
 ///
 /// Anything that reads Arrow streams takes it without a copy: `pyarrow.table(rows)`, `polars.DataFrame(rows)`,
-/// `duckdb.sql("from rows")` of such a table. Columns and units:
+/// `duckdb.sql("from rows")` of such a table. Columns, types (f32 is float32, u32 uint32) and units:
 ///
-/// - one_minus_alpha, alpha_sum, transmittance, r, g, b: float32, 1 (linear radiance, un-premultiplied)
-/// - linear_depth, near, far: float32, scene units
-/// - fragment_count, view, x, y, layer: uint32; `view` indexes `views`, `layer` counts from the front
+#[doc = dataset::column_docs!()]
 #[pyclass(frozen, module = "peelnet")]
 pub struct Rows {
     batches: Vec<RecordBatch>,
@@ -49,27 +47,14 @@ pub struct Rows {
 
 /// A batch whose columns become Arrow's without a copy.
 fn record_batch(batch: FragmentBatch) -> Result<RecordBatch, Failure> {
-    let f = |values: Vec<f32>| Arc::new(Float32Array::new(values.into(), None)) as ArrayRef;
-    let u = |values: Vec<u32>| Arc::new(UInt32Array::new(values.into(), None)) as ArrayRef;
-    let b = batch;
-    let columns = [
-        f(b.one_minus_alpha),
-        f(b.linear_depth),
-        f(b.alpha_sum),
-        u(b.fragment_count),
-        f(b.transmittance),
-        u(b.view),
-        u(b.x),
-        u(b.y),
-        u(b.layer),
-        f(b.r),
-        f(b.g),
-        f(b.b),
-        f(b.near),
-        f(b.far),
-    ];
-    let columns = Column::ALL.into_iter().zip(columns);
-    let columns = columns.map(|(column, values)| (column.name(), values, false));
+    let columns = Column::ALL.into_iter().zip(batch.into_columns());
+    let columns = columns.map(|(column, values)| {
+        let array: ArrayRef = match values {
+            ColumnValues::F32(values) => Arc::new(Float32Array::new(values.into(), None)),
+            ColumnValues::U32(values) => Arc::new(UInt32Array::new(values.into(), None)),
+        };
+        (column.name(), array, false)
+    });
     Ok(RecordBatch::try_from_iter_with_nullable(columns)?)
 }
 
@@ -235,7 +220,10 @@ impl Dataset {
 
     fn __repr__(&self) -> String {
         let rows = thousands(self.dataset.rows());
-        format!("Dataset({}: {rows} rows)", peelnet_core::files::shown(&self.path))
+        format!(
+            "Dataset({}: {rows} rows)",
+            peelnet_core::files::shown(&self.path)
+        )
     }
 }
 
@@ -260,7 +248,7 @@ fn in_memory(
             seconds: start.elapsed().as_secs_f64(),
         });
     };
-    for batch in extract::batches(gpu, scenes, options)? {
+    for batch in peel::batches(gpu, scenes, options)? {
         if stop.load(Ordering::Relaxed) {
             return Err(PeelError::Interrupted.into());
         }
@@ -283,7 +271,7 @@ enum Done {
 ///
 /// Args:
 ///     scenes: A scene or a list of scenes (Scene, path, or name of a shipped scene).
-///     out: Folder of the dataset. Without it the rows stay in memory (56 bytes a row).
+///     out: Folder of the dataset. Without it the rows stay in memory (4 bytes a row and column).
 ///     size: (width, height), pixels.
 ///     views: The first N views of each scene; all by default.
 ///     pixels: Fraction of the pixels to keep, above 0 and at most 1.
@@ -353,7 +341,7 @@ pub fn extract_rows<'py>(
                 return in_memory(&gpu, &scenes, &options, stop, reporter).map(Done::Rows);
             }
             let mut say = |p: &Progress| reporter.say(*p);
-            let report = extract::extract(&gpu, &scenes, &options, stop, &mut say)?;
+            let report = peel::extract(&gpu, &scenes, &options, stop, &mut say)?;
             Ok(Done::Folder(Box::new(report)))
         },
         |_, progress| {

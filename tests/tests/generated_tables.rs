@@ -1,14 +1,15 @@
-//! Tables in the documents are those of the committed results.
+//! Tables in the documents are those of the committed results, and of the dataset's columns.
 //!
 //! `<!-- table of FILE | column; … | row; … -->` and `<!-- end of table -->` enclose columns of FILE's first table, in the order given,
 //! and of its rows those whose first cell is listed, or all where the third part is absent. `PEELNET_UPDATE=1` writes them again.
+//! `<!-- table of columns -->` and `<!-- end of table -->` enclose a list of the columns of [`peelnet_dataset::Column`].
 
 use std::{
     fs,
     path::{Path, PathBuf},
 };
 
-const PAGES: [&str; 2] = ["README.md", "docs/benchmarks.md"];
+const PAGES: [&str; 3] = ["README.md", "docs/benchmarks.md", "docs/python.md"];
 const BEGIN: &str = "<!-- table of ";
 const END: &str = "<!-- end of table -->";
 
@@ -27,6 +28,9 @@ fn cells(line: &str) -> Vec<&str> {
 
 /// The table that a marker's text, without its brackets, asks for.
 fn table(marker: &str) -> String {
+    if marker == "columns" {
+        return format!("\n{}\n", peelnet_dataset::column_docs!());
+    }
     let parts: Vec<&str> = marker.split(" | ").map(str::trim).collect();
     let text = read(parts[0]);
     let lines: Vec<Vec<&str>> = text

@@ -1,5 +1,8 @@
 use peelnet_core::fragment::Fragment;
-use peelnet_peel::{Peel, harvest::Harvester, rows::RawTile};
+use peelnet_peel::{
+    Peel,
+    read_back::{FragmentReader, RawTile},
+};
 use peelnet_render::gpu::{Gpu, GpuError};
 use peelnet_render::{MethodOptions, MethodSpec, PixelSample, RenderError, Renderer};
 use peelnet_tests::{frame, gpu, prepare, walls};
@@ -28,14 +31,14 @@ fn full_memory_makes_smaller_tiles() {
     assert_eq!(tiled.image, whole.image);
     assert!(gpu.memory_was_full());
 
-    let mut harvester = Harvester::new(&gpu, &scene, size, Peel::SBuffer, false, None).unwrap();
+    let mut reader = FragmentReader::new(&gpu, &scene, size, Peel::SBuffer, false, None).unwrap();
     let mut fragments = 0;
     let take = |tile: &mut RawTile| {
         fragments += tile.depths.len();
         Ok(())
     };
     let (view, all) = (&scene.views[0], PixelSample::ALL);
-    let found = harvester.harvest(view, all, None, take);
+    let found = reader.read_view(view, all, None, take);
     let found = found.unwrap();
     assert_eq!((fragments, found.tiles), (64 * 48 * 20, 16));
 }

@@ -456,5 +456,5 @@ fn public_types_are_send() {
     is_send::<Renderer>();
     is_send::<Prepared>();
     is_shared::<Scene>();
-    is_send::<peelnet_peel::harvest::Harvester>();
+    is_send::<peelnet_peel::read_back::FragmentReader>();
 }

@@ -3,7 +3,10 @@
 use glam::Vec3;
 use peelnet_bench::stress::judge::clip_triangles;
 use peelnet_core::{hash, random::Random, scanline, tolerance::UNIT_ROUNDOFF};
-use peelnet_peel::{Peel, harvest::Harvester, rows::RawTile};
+use peelnet_peel::{
+    Peel,
+    read_back::{FragmentReader, RawTile},
+};
 use peelnet_render::gpu::Gpu;
 use peelnet_render::{PixelSample, Renderer};
 use peelnet_scene::{Material, Scene};
@@ -26,14 +29,14 @@ fn mixed(objects: usize, seed: u64) -> Scene {
 /// One pixel: depths and colours, front to back; empty slots left out.
 type Pixel = Vec<(f32, [f32; 4])>;
 
-fn harvest(
+fn read_pixels(
     gpu: &Gpu,
     scene: &Scene,
     peel: Peel,
     budget: Option<u64>,
     sample: Option<PixelSample>,
 ) -> (Vec<Pixel>, u32) {
-    let mut harvester = Harvester::new(gpu, scene, SIZE, peel, sample.is_some(), budget).unwrap();
+    let mut reader = FragmentReader::new(gpu, scene, SIZE, peel, sample.is_some(), budget).unwrap();
     let mut pixels = vec![Pixel::new(); (SIZE[0] * SIZE[1]) as usize];
     let take = |tile: &mut RawTile| {
         for (run, i) in tile.offsets.windows(2).zip(tile.first_pixel as usize..) {
@@ -44,7 +47,7 @@ fn harvest(
         Ok(())
     };
     let sample = sample.unwrap_or(PixelSample::ALL);
-    let found = harvester.harvest(&scene.views[0], sample, None, take);
+    let found = reader.read_view(&scene.views[0], sample, None, take);
     let found = found.unwrap();
     let most = pixels.iter().map(Vec::len).max();
     assert_eq!(Some(found.max_layers as usize), most);
@@ -57,13 +60,13 @@ fn all_three_ways_find_the_same_fragments() {
     let gpu = gpu();
     for (seed, tilings) in [(1, 3), (2, 1), (3, 1)] {
         let scene = mixed(40, seed);
-        let (sbuffer, _) = harvest(&gpu, &scene, Peel::SBuffer, None, None);
+        let (sbuffer, _) = read_pixels(&gpu, &scene, Peel::SBuffer, None, None);
         assert!(sbuffer.iter().map(Vec::len).max() > Some(10));
         let total: usize = sbuffer.iter().map(Vec::len).sum();
         for peel in [Peel::SBuffer, Peel::Dual, Peel::Single] {
             let budgets = [None, Some(total as u64 / 3), Some(150)];
             for budget in &budgets[..tilings] {
-                let (found, tiles) = harvest(&gpu, &scene, peel, *budget, None);
+                let (found, tiles) = read_pixels(&gpu, &scene, peel, *budget, None);
                 assert!(budget.map_or(tiles == 1, |_| tiles >= 3));
                 assert!(found == sbuffer, "{peel}, seed {seed}, {tiles} tiles");
             }
@@ -121,9 +124,9 @@ fn rows_of_deep_pixels_are_those_of_a_sort_on_the_cpu() {
         .collect();
     // A tile for all, and tiles of which some hold a few pixels.
     for budget in [None, Some(30_000)] {
-        let harvester = Harvester::new(&gpu, &scene, size, Peel::SBuffer, false, budget);
-        let mut harvester = harvester.unwrap();
-        harvester.keep_triangles(true);
+        let reader = FragmentReader::new(&gpu, &scene, size, Peel::SBuffer, false, budget);
+        let mut reader = reader.unwrap();
+        reader.keep_triangles(true);
         let mut pixels = 0;
         let check = |tile: &mut RawTile| {
             for (run, pixel) in tile.offsets.windows(2).zip(tile.first_pixel..) {
@@ -154,8 +157,8 @@ fn rows_of_deep_pixels_are_those_of_a_sort_on_the_cpu() {
             Ok(())
         };
         let (view, all) = (&scene.views[0], PixelSample::ALL);
-        let harvested = harvester.harvest(view, all, None, check);
-        harvested.unwrap();
+        let read = reader.read_view(view, all, None, check);
+        read.unwrap();
         assert_eq!(pixels, lists.len());
     }
 }
@@ -198,12 +201,12 @@ fn broken_sorts_and_lost_fragments_are_errors() {
         let altered = text.replacen(from, to, 1);
         peelnet_render::shaders::with_altered(module, &altered, || {
             if is_stored {
-                let harvester = Harvester::new(&gpu, &scene, size, Peel::SBuffer, false, None);
+                let reader = FragmentReader::new(&gpu, &scene, size, Peel::SBuffer, false, None);
                 let (view, all) = (&scene.views[0], PixelSample::ALL);
                 let ignored = |_: &mut RawTile| Ok(());
-                let mut harvester = harvester.unwrap();
-                let harvested = harvester.harvest(view, all, None, ignored);
-                let message = harvested.unwrap_err().to_string();
+                let mut reader = reader.unwrap();
+                let read = reader.read_view(view, all, None, ignored);
+                let message = read.unwrap_err().to_string();
                 let says = message.contains(expected) && message.contains("pixel (");
                 assert!(says, "{message}");
             }
@@ -226,8 +229,8 @@ fn a_pixel_sample_keeps_whole_pixels_and_the_right_ones() {
         view: 3,
         threshold: hash::sample_threshold(0.3),
     };
-    let (whole, _) = harvest(&gpu, &scene, Peel::SBuffer, None, None);
-    let (kept, _) = harvest(&gpu, &scene, Peel::SBuffer, None, Some(sample));
+    let (whole, _) = read_pixels(&gpu, &scene, Peel::SBuffer, None, None);
+    let (kept, _) = read_pixels(&gpu, &scene, Peel::SBuffer, None, Some(sample));
     for (i, (w, k)) in (0..).zip(whole.iter().zip(&kept)) {
         let (x, y) = (i % SIZE[0], i / SIZE[0]);
         let inside = hash::pixel_hash(77, 3, x, y) <= sample.threshold;
@@ -244,7 +247,7 @@ fn the_judge_finds_the_same_fragments() {
         let [w, h] = SIZE.map(|s| s as usize);
         let judge = scanline::rasterise(&triangles, w, h, [0.0; 2]);
         let stable = scanline::stable_pixels(&triangles, w, h, SNAP);
-        let (peeled, _) = harvest(&gpu, &scene, Peel::SBuffer, None, None);
+        let (peeled, _) = read_pixels(&gpu, &scene, Peel::SBuffer, None, None);
         let (mut judged, mut fragments) = (0, 0);
         for i in 0..w * h {
             if !stable[i] {

@@ -50,7 +50,7 @@ fn sums_hold_and_formats_and_peels_agree() {
         assert!(effects.eq([vec![], vec!["culling", "emission"]]));
         let dataset = Dataset::open(&out).unwrap();
         dataset.verify().unwrap();
-        let summary = Summary::of(&dataset).unwrap();
+        let summary = Summary::from_dataset(&dataset).unwrap();
         assert!(summary.passes(), "{:?}", summary.violations);
         assert!(summary.rows > 1000, "{}", summary.rows);
         let rows = dataset.read_columns(&Column::ALL).unwrap();

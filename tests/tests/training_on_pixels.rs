@@ -26,7 +26,7 @@ fn synthetic_lists_are_a_sound_dataset() {
     let other = lists(&dir.path().join("c"), 3000, 8);
     assert_eq!(first.manifest().hash, again.manifest().hash);
     assert_ne!(first.manifest().hash, other.manifest().hash);
-    let summary = Summary::of(&first).unwrap();
+    let summary = Summary::from_dataset(&first).unwrap();
     assert!(summary.passes(), "{:?}", summary.violations);
     // A ray that meets nothing leaves no row.
     assert!((2401..=3000).contains(&summary.pixels));

@@ -9,7 +9,10 @@ use peelnet_core::{
     absorbance::DepthWarp, fragment::Fragment, hash::sample_threshold, methods::over,
 };
 use peelnet_model::Model;
-use peelnet_peel::{Peel, harvest::Harvester, rows::RawTile};
+use peelnet_peel::{
+    Peel,
+    read_back::{FragmentReader, RawTile},
+};
 use peelnet_render::gpu::Gpu;
 use peelnet_render::{Frame, FrameStats, Image, MethodSpec, PixelSample, methods::Pixel};
 use peelnet_scene::{Camera, Scene};
@@ -26,7 +29,7 @@ pub(crate) struct Stacks {
 
 pub(crate) struct Peeled<'a> {
     scene: &'a Scene,
-    harvester: Harvester,
+    reader: FragmentReader,
 }
 
 impl<'a> Peeled<'a> {
@@ -37,13 +40,13 @@ impl<'a> Peeled<'a> {
         size: [u32; 2],
         sampled: bool,
     ) -> Result<Self, EvalError> {
-        let harvester = Harvester::new(gpu, scene, size, Peel::SBuffer, sampled, None)
+        let reader = FragmentReader::new(gpu, scene, size, Peel::SBuffer, sampled, None)
             .map_err(EvalError::at(format!("scene '{}'", scene.name)))?;
-        Ok(Self { scene, harvester })
+        Ok(Self { scene, reader })
     }
 
     pub fn depth_warp(&self, camera: &Camera) -> DepthWarp {
-        self.harvester.depth_warp(camera)
+        self.reader.depth_warp(camera)
     }
 
     /// Takes the number and the fragments, nearest first, of every pixel of a sample that has any.
@@ -53,7 +56,7 @@ impl<'a> Peeled<'a> {
         sample: PixelSample,
         mut take: impl FnMut(usize, Vec<Fragment>),
     ) -> Result<(), EvalError> {
-        self.harvester.keep_triangles(true);
+        self.reader.keep_triangles(true);
         let tile = |tile: &mut RawTile| {
             for (run, pixel) in tile.offsets.windows(2).zip(tile.first_pixel..) {
                 let run = run[0] as usize..run[1] as usize;
@@ -70,8 +73,8 @@ impl<'a> Peeled<'a> {
             }
             Ok(())
         };
-        self.harvester
-            .harvest(camera, sample, None, tile)
+        self.reader
+            .read_view(camera, sample, None, tile)
             .map(|_| ())
             .map_err(EvalError::at(format!("scene '{}'", self.scene.name)))
     }

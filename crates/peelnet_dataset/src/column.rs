@@ -1,9 +1,12 @@
-//! The fourteen columns: names, order and types, in one table. Everything else in the crate asks this list.
+//! The columns of a dataset, in one table: name, type, unit, allowed values, and what a value says. Files,
+//! readers, summaries, documentation and the Python package iterate over it. How peeled fragments become
+//! rows and what rows must say about one another follow it.
 
 use std::fmt;
 use std::ops::Range;
 use std::path::Path;
 
+use peelnet_core::tolerance::{self, UNIT_ROUNDOFF};
 use serde::{Deserialize, Serialize};
 
 use crate::error::DatasetError;
@@ -18,16 +21,53 @@ pub enum ColumnKind {
     U32,
 }
 
-/// Makes [`Column`] and [`FragmentBatch`] of rows of documentation, variant, name and type.
+impl ColumnKind {
+    /// The name in manifests and documents.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::F32 => "f32",
+            Self::U32 => "u32",
+        }
+    }
+}
+
+/// Which values a column may have. No float is NaN or infinite.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Allowed {
+    Any,
+    AboveZero,
+    NotNegative,
+    ZeroToOne,
+    /// The index of the part that the row is in.
+    PartIndex,
+}
+
+impl Allowed {
+    /// Least and greatest value of a float column, and the rule in words.
+    const fn floats(self) -> (f32, f32, &'static str) {
+        match self {
+            Self::ZeroToOne => (0.0, 1.0, "it must be a number from 0 to 1"),
+            Self::AboveZero => {
+                let least = f32::from_bits(1);
+                (least, f32::MAX, "it must be a finite number above 0")
+            }
+            Self::NotNegative => (0.0, f32::MAX, "it must be a finite number not below 0"),
+            Self::Any | Self::PartIndex => (f32::MIN, f32::MAX, "it must be a finite number"),
+        }
+    }
+}
+
+/// Makes [`Column`], [`FragmentBatch`] and `column_docs!` of rows of what a value says, variant, name, type,
+/// unit and allowed values.
 macro_rules! columns {
-    ($($(#[doc = $doc:literal])+ $variant:ident $name:ident $kind:ident $type:ty,)+) => {
+    ($($(#[doc = $doc:literal])+ $variant:ident $name:ident $kind:ident $type:ident $unit:literal $allowed:ident,)+) => {
         /// A column of the dataset. The discriminants are the order in every format.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
         pub enum Column {
             $($(#[doc = $doc])+ $variant,)+
         }
 
-        /// Some rows of the dataset as fourteen vectors of equal length.
+        /// Some rows of the dataset as a vector of each column, all of equal length.
         #[derive(Clone, Debug, Default, PartialEq)]
         pub struct FragmentBatch {
             $($(#[doc = $doc])+ pub $name: Vec<$type>,)+
@@ -35,7 +75,7 @@ macro_rules! columns {
 
         impl Column {
             /// All columns in the order of the files.
-            pub const ALL: [Self; 14] = [$(Self::$variant,)+];
+            pub const ALL: [Self; [$(Self::$variant),+].len()] = [$(Self::$variant),+];
 
             /// The name in headers and file names.
             pub const fn name(self) -> &'static str {
@@ -50,6 +90,22 @@ macro_rules! columns {
                     $(Self::$variant => ColumnKind::$kind,)+
                 }
             }
+
+            const fn allowed(self) -> Allowed {
+                match self {
+                    $(Self::$variant => Allowed::$allowed,)+
+                }
+            }
+        }
+
+        /// The columns as a list in Markdown, as a literal: name, type, unit, what a value says.
+        #[macro_export]
+        macro_rules! column_docs {
+            () => {
+                concat!($(
+                    "- `", stringify!($name), "`: ", stringify!($type), ", ", $unit, ".", $($doc,)+ "\n",
+                )+)
+            };
         }
 
         impl FragmentBatch {
@@ -66,11 +122,9 @@ macro_rules! columns {
                 }
             }
 
-            /// An empty batch with room for `rows` rows.
-            pub fn with_capacity(rows: usize) -> Self {
-                Self {
-                    $($name: Vec::with_capacity(rows),)+
-                }
+            /// The vectors of all columns, in their order.
+            pub fn into_columns(self) -> [ColumnValues; Column::ALL.len()] {
+                [$(ColumnValues::$kind(self.$name)),+]
             }
 
             /// Appends some rows of another batch.
@@ -110,34 +164,154 @@ macro_rules! columns {
 }
 
 columns! {
-    /// 1 − α_i of the fragment itself, 0 … 1.
-    OneMinusAlpha one_minus_alpha F32 f32,
-    /// z_i, distance along the view axis in scene units, positive.
-    LinearDepth linear_depth F32 f32,
+    /// 1 − α_i of the fragment itself.
+    OneMinusAlpha one_minus_alpha F32 f32 "1" ZeroToOne,
+    /// z_i, distance along the view axis.
+    LinearDepth linear_depth F32 f32 "scene units" AboveZero,
     /// Σ α over the pixel.
-    AlphaSum alpha_sum F32 f32,
+    AlphaSum alpha_sum F32 f32 "1" NotNegative,
     /// n, the number of fragments of the pixel.
-    FragmentCount fragment_count U32 u32,
-    /// T_i = ∏_{j<i}(1 − α_j), 0 … 1: the target of training.
-    Transmittance transmittance F32 f32,
+    FragmentCount fragment_count U32 u32 "1" AboveZero,
+    /// T_i = ∏_{j<i}(1 − α_j): the target of training.
+    Transmittance transmittance F32 f32 "1" ZeroToOne,
     /// Index of the work item (scene × copy × view) in the whole dataset.
-    View view U32 u32,
+    View view U32 u32 "1" PartIndex,
     /// Pixel column, 0 at the left.
-    X x U32 u32,
+    X x U32 u32 "pixels" Any,
     /// Pixel row, 0 at the top.
-    Y y U32 u32,
+    Y y U32 u32 "pixels" Any,
     /// Rank of the fragment from the front, 0 for the nearest.
-    Layer layer U32 u32,
+    Layer layer U32 u32 "1" Any,
     /// Red radiance, un-premultiplied, linear.
-    R r F32 f32,
+    R r F32 f32 "1" Any,
     /// Green radiance, un-premultiplied, linear.
-    G g F32 f32,
+    G g F32 f32 "1" Any,
     /// Blue radiance, un-premultiplied, linear.
-    B b F32 f32,
-    /// Near clip distance of the view, scene units.
-    Near near F32 f32,
-    /// Far clip distance of the view, scene units.
-    Far far F32 f32,
+    B b F32 f32 "1" Any,
+    /// Near clip distance of the view.
+    Near near F32 f32 "scene units" AboveZero,
+    /// Far clip distance of the view.
+    Far far F32 f32 "scene units" AboveZero,
+}
+
+/// A fragment as it was peeled: what no other column of its row implies.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PeeledFragment {
+    /// Linear depth, scene units; 0 of a fragment that peeling lost, which makes no row.
+    pub depth: f32,
+    /// Un-premultiplied linear radiance and alpha.
+    pub color: [f32; 4],
+}
+
+impl PeeledFragment {
+    /// A fragment that no scene was drawn for.
+    pub const fn new(depth: f32, color: [f32; 4]) -> Self {
+        Self { depth, color }
+    }
+}
+
+/// Fragments of a pixel beyond which sums and products are formed in 64 bits: `n` factors formed in 32 bits err by up to `2n` roundings
+/// of 2⁻²⁴, a hundredth at 100,000. Rows of shorter runs keep the bits that they have always had.
+const LONG: usize = 1500;
+
+impl FragmentBatch {
+    /// Appends the rows of a pixel of part `view`, of fragments from the nearest to the farthest; returns how
+    /// many. `near` and `far` are the view's clip distances, scene units.
+    pub fn push_pixel(
+        &mut self,
+        [view, x, y]: [u32; 3],
+        [near, far]: [f32; 2],
+        fragments: impl ExactSizeIterator<Item = PeeledFragment> + Clone,
+    ) -> u32 {
+        let is_long = fragments.len() > LONG;
+        let found = fragments.filter(|f| f.depth > 0.0);
+        let (mut alpha_sum, mut long_sum) = (0.0f32, 0.0f64);
+        let (mut transmittance, mut long_product) = (1.0f32, 1.0f64);
+        let mut count = 0;
+        for fragment in found {
+            let [r, g, b, alpha] = fragment.color;
+            let through = 1.0 - alpha;
+            self.one_minus_alpha.push(through);
+            self.linear_depth.push(fragment.depth);
+            self.transmittance.push(transmittance);
+            self.layer.push(count);
+            self.r.push(r);
+            self.g.push(g);
+            self.b.push(b);
+            count += 1;
+            alpha_sum += alpha;
+            transmittance *= through;
+            if is_long {
+                long_sum += f64::from(alpha);
+                long_product *= 1.0 - f64::from(alpha);
+                transmittance = long_product as f32;
+            }
+        }
+        if is_long {
+            alpha_sum = long_sum as f32;
+        }
+        let rows = self.len();
+        self.alpha_sum.resize(rows, alpha_sum);
+        self.fragment_count.resize(rows, count);
+        self.view.resize(rows, view);
+        self.x.resize(rows, x);
+        self.y.resize(rows, y);
+        self.near.resize(rows, near);
+        self.far.resize(rows, far);
+        count
+    }
+}
+
+/// A pixel's rows, and what those say together, in 64 bits.
+pub(crate) struct PixelSums {
+    pub rows: Range<usize>,
+    pub alpha_sum: f64,
+    /// ∏(1 − α_j) over the rows before this one.
+    pub transmittance: f64,
+    /// Whether peeling left fragments of the part out.
+    pub lossy: bool,
+}
+
+/// What columns must say, given the other rows of their pixel: the property with its tolerance, in the order
+/// of summaries.
+pub(crate) const CHECKS: &[(Column, &str)] = &[
+    (Column::Transmittance, "|T_i − ∏_{j<i}(1 − α_j)| ≤ 2·n·2⁻²⁴"),
+    (Column::AlphaSum, "|alpha_sum − Σα| ≤ n·2⁻²⁴·(Σα + 1)"),
+    (Column::FragmentCount, "fragment_count = rows of the pixel"),
+    (Column::Layer, "layer = 0, 1, … n − 1"),
+    (Column::LinearDepth, "z_i ≥ z_{i−1}"),
+];
+
+impl FragmentBatch {
+    /// What a column of [`CHECKS`] must say in row `i` of a pixel, and how far it may be off; `None` where
+    /// that cannot be known.
+    pub(crate) fn expected(
+        &self,
+        column: Column,
+        sums: &PixelSums,
+        i: usize,
+    ) -> Option<(f64, f64)> {
+        let (n, before) = (sums.rows.len(), sums.rows.start.max(i.saturating_sub(1)));
+        Some(match column {
+            Column::LinearDepth => {
+                let expected = self.linear_depth[i].max(self.linear_depth[before]);
+                (expected.into(), 0.0)
+            }
+            // All others are of all fragments of the pixel.
+            _ if sums.lossy => return None,
+            Column::Transmittance => (sums.transmittance, tolerance::transmittance(n)),
+            // Σα summed in 32 bits in any order, against a 64-bit sum over the stored 1 − α: n − 1 additions
+            // err by at most one unit roundoff of the sum each, and n times α is recovered from a rounded
+            // 1 − α, at most one unit roundoff of 1.
+            Column::AlphaSum => {
+                let tolerance = n as f64 * UNIT_ROUNDOFF * (sums.alpha_sum + 1.0);
+                (sums.alpha_sum, tolerance)
+            }
+            Column::FragmentCount => (n as f64, 0.0),
+            Column::Layer => ((i - sums.rows.start) as f64, 0.0),
+            _ => return None,
+        })
+    }
 }
 
 impl Column {
@@ -150,21 +324,6 @@ impl Column {
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|c| c.name() == name)
     }
-
-    /// Least and greatest value that a float column may have, and the rule in words.
-    pub(crate) const fn float_range(self) -> (f32, f32, &'static str) {
-        match self {
-            Self::OneMinusAlpha | Self::Transmittance => {
-                (0.0, 1.0, "it must be a number from 0 to 1")
-            }
-            Self::LinearDepth | Self::Near | Self::Far => {
-                let least = f32::from_bits(1);
-                (least, f32::MAX, "it must be a finite number above 0")
-            }
-            Self::AlphaSum => (0.0, f32::MAX, "it must be a finite number not below 0"),
-            _ => (f32::MIN, f32::MAX, "it must be a finite number"),
-        }
-    }
 }
 
 impl fmt::Display for Column {
@@ -173,18 +332,29 @@ impl fmt::Display for Column {
     }
 }
 
-/// The values of one column.
+/// The values of one column, by their type.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum ColumnSlice<'a> {
+pub enum Typed<F, U> {
     /// Values of a float column.
-    F32(&'a [f32]),
+    F32(F),
     /// Values of an integer column.
-    U32(&'a [u32]),
+    U32(U),
 }
 
-pub(crate) enum ColumnMut<'a> {
-    F32(&'a mut Vec<f32>),
-    U32(&'a mut Vec<u32>),
+/// The values of one column of a batch.
+pub type ColumnSlice<'a> = Typed<&'a [f32], &'a [u32]>;
+/// The values of one column, taken out of a batch.
+pub type ColumnValues = Typed<Vec<f32>, Vec<u32>>;
+pub(crate) type ColumnMut<'a> = Typed<&'a mut Vec<f32>, &'a mut Vec<u32>>;
+
+impl ColumnSlice<'_> {
+    /// The value of a row.
+    pub(crate) fn value(&self, row: usize) -> f64 {
+        match self {
+            Self::F32(values) => values[row].into(),
+            Self::U32(values) => values[row].into(),
+        }
+    }
 }
 
 impl FragmentBatch {
@@ -229,21 +399,24 @@ impl FragmentBatch {
         first_row: u64,
         view: u32,
     ) -> Result<(), DatasetError> {
-        let (bad, allowed) = match (self.column(column), column) {
-            (ColumnSlice::F32(values), _) => {
-                let (least, most, allowed) = column.float_range();
+        let allowed = column.allowed();
+        let (bad, allowed) = match self.column(column) {
+            ColumnSlice::F32(values) => {
+                let (least, most, allowed) = allowed.floats();
                 let good = |v| v >= least && v <= most;
                 (first_bad(&values[start..], good), allowed)
             }
-            (ColumnSlice::U32(values), Column::View) => {
-                let allowed = "it must be the index of the part";
-                (first_bad(&values[start..], |v| v == view), allowed)
-            }
-            (ColumnSlice::U32(values), Column::FragmentCount) => {
-                let allowed = "it must be at least 1";
-                (first_bad(&values[start..], |v| v > 0), allowed)
-            }
-            (ColumnSlice::U32(_), _) => return Ok(()),
+            ColumnSlice::U32(values) => match allowed {
+                Allowed::PartIndex => (
+                    first_bad(&values[start..], |v| v == view),
+                    "it must be the index of the part",
+                ),
+                Allowed::AboveZero => (
+                    first_bad(&values[start..], |v| v > 0),
+                    "it must be at least 1",
+                ),
+                _ => return Ok(()),
+            },
         };
         let Some((i, value)) = bad else { return Ok(()) };
         let row = first_row + i as u64 + 1;
@@ -265,4 +438,20 @@ fn first_bad<T: Copy + fmt::Display>(
     }
     let i = values.iter().position(|&v| !good(v))?;
     Some((i, values[i].to_string()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Names and order are the format: other programs read files by them.
+    #[test]
+    fn names_and_order_are_the_format() {
+        assert_eq!(
+            Column::ALL.map(Column::name).join(","),
+            "one_minus_alpha,linear_depth,alpha_sum,fragment_count,transmittance,view,x,y,layer,r,g,b,near,far"
+        );
+        let last = "- `far`: f32, scene units. Far clip distance of the view.\n";
+        assert!(column_docs!().ends_with(last));
+    }
 }

@@ -12,14 +12,14 @@ use std::time::Duration;
 use peelnet_core::files::Unfinished;
 
 use crate::error::DatasetError;
-use crate::formats::hash_file;
+use crate::hash::hash_file;
 use crate::manifest::Manifest;
 use crate::parts::{PartRecord, part_of_file};
 use crate::plan::{Plan, host};
-use crate::store::{FRAGMENTS, Folder, MANIFEST, META, PARTS, PLAN, is_absent, names_in, store_at};
+use crate::store::{
+    FRAGMENTS, Folder, MANIFEST, META, PARTIAL, PARTS, PLAN, is_absent, names_in, store_at,
+};
 
-/// Prefix of what a writer has in `_peelnet/` until it is finished: a hidden folder with parts, and small files.
-pub(crate) const PARTIAL: &str = ".partial-";
 /// A file in the hidden folder that its writer holds locked, with its machine's name. It is created first and removed last.
 const LOCK: &str = "lock";
 
@@ -36,14 +36,14 @@ pub(crate) struct Partial {
     pub path: PathBuf,
     lock: Option<File>,
     _unfinished: Unfinished,
-    _made: Made,
+    _created: CreatedFolders,
 }
 
-/// Folders that a writer made, innermost first. Dropping it removes those that are still empty.
+/// Folders that a writer created, innermost first. Dropping it removes those that are still empty.
 #[derive(Debug)]
-struct Made(Vec<PathBuf>);
+struct CreatedFolders(Vec<PathBuf>);
 
-impl Drop for Made {
+impl Drop for CreatedFolders {
     fn drop(&mut self) {
         for folder in &self.0 {
             // Not empty or gone: both are as they should be.
@@ -57,20 +57,20 @@ impl Partial {
     pub(crate) fn in_dataset(folder: &Path) -> Result<Self, DatasetError> {
         let meta = folder.join(META);
         let is_new = |a: &&Path| !a.as_os_str().is_empty() && !a.exists();
-        let mut made = vec![meta.join("parts"), meta.clone()];
+        let mut created = vec![meta.join("parts"), meta.clone()];
         let new = folder.ancestors().take_while(is_new);
-        made.extend(new.map(Path::to_owned));
-        let made = Made(made);
+        created.extend(new.map(Path::to_owned));
+        let created = CreatedFolders(created);
         fs::create_dir_all(&meta).map_err(DatasetError::io(folder, "create the folder"))?;
-        Self::create(&meta, made)
+        Self::create(&meta, created)
     }
 
     /// On this machine, for a dataset on another one.
     pub(crate) fn temporary() -> Result<Self, DatasetError> {
-        Self::create(&std::env::temp_dir(), Made(Vec::new()))
+        Self::create(&std::env::temp_dir(), CreatedFolders(Vec::new()))
     }
 
-    fn create(parent: &Path, _made: Made) -> Result<Self, DatasetError> {
+    fn create(parent: &Path, _created: CreatedFolders) -> Result<Self, DatasetError> {
         let hidden = tempfile::Builder::new().prefix(PARTIAL).tempdir_in(parent);
         let hidden = hidden.map_err(DatasetError::io(parent, "write into"))?;
         let _unfinished = Unfinished::new(hidden.path());
@@ -90,7 +90,7 @@ impl Partial {
             path: hidden.keep(),
             lock,
             _unfinished,
-            _made,
+            _created,
         })
     }
 }

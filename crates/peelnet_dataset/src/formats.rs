@@ -3,23 +3,21 @@
 mod csv;
 mod npy;
 mod parquet;
+mod part_file;
 
 use std::fmt;
 use std::fs::File;
-use std::io::{self, Read as _};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::str::FromStr;
 
-use peelnet_core::files::hex;
 use serde::{Deserialize, Serialize};
-use sha2::{Digest, Sha256};
 
-use crate::column::{Column, FragmentBatch};
+use crate::column::Column;
 use crate::error::DatasetError;
 use crate::store::Fetched;
 
-/// Rows of a full row group of Parquet.
-pub const ROW_GROUP_ROWS: usize = 1 << 20;
+pub use parquet::ROW_GROUP_ROWS;
+pub(crate) use part_file::{PartSink, PartSource};
 
 /// The file format of a dataset's parts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -134,58 +132,5 @@ impl FromStr for Format {
                 "dataset format {text:?}: expected csv, parquet or npy"
             ))
         })
-    }
-}
-
-/// Writes one part's rows. What has been given must not depend on the cuts between calls.
-pub(crate) trait PartSink: Send {
-    /// Appends rows, which are valid and of equal length.
-    fn write(&mut self, rows: &FragmentBatch) -> Result<(), DatasetError>;
-
-    /// Ends the files, which have so many rows.
-    fn finish(self: Box<Self>, rows: u64) -> Result<(), DatasetError>;
-}
-
-pub(crate) trait PartSource: Send {
-    /// Appends up to `max` rows to the asked columns of `rows` and says how many; 0 at the end.
-    fn read(&mut self, max: usize, rows: &mut FragmentBatch) -> Result<usize, DatasetError>;
-}
-
-/// Compares a file's column names with the schema's.
-fn check_names(path: &Path, place: &str, found: &[String]) -> Result<(), DatasetError> {
-    let expected = Column::ALL.map(Column::name);
-    let missing = expected.iter().find(|c| !found.iter().any(|n| n == *c));
-    let wanted = |k: usize| expected.get(k).copied().unwrap_or("no column");
-    let problem = if let Some(missing) = missing {
-        format!("column {missing} is missing")
-    } else if let Some(k) = (0..found.len()).find(|&k| found[k] != wanted(k)) {
-        let (number, name, wanted) = (k + 1, &found[k], wanted(k));
-        format!("column {number} is {name:?} where {wanted} is expected")
-    } else {
-        return Ok(());
-    };
-    let expected = expected.join(", ");
-    let reason = format!("{place}: {problem}; the columns must be {expected}, in this order");
-    Err(DatasetError::invalid(path, reason))
-}
-
-/// Hexadecimal sha256 of some bytes.
-pub fn sha256(bytes: &[u8]) -> String {
-    hex(&Sha256::digest(bytes))
-}
-
-/// Length and hexadecimal sha256 of an existing file.
-pub(crate) fn hash_file(path: &Path) -> io::Result<(u64, String)> {
-    let mut file = peelnet_core::files::open(path)?;
-    let mut hasher = Sha256::new();
-    let mut buffer = vec![0; 1 << 18];
-    let mut bytes = 0;
-    loop {
-        let n = file.read(&mut buffer)?;
-        if n == 0 {
-            return Ok((bytes, hex(&hasher.finalize())));
-        }
-        hasher.update(&buffer[..n]);
-        bytes += n as u64;
     }
 }

@@ -14,7 +14,7 @@
 //!   _peelnet/manifest.json                    the seal: scenes, cameras, counts, sha256 of every file
 //! ```
 //!
-//! A row is one fragment, and its columns are the fourteen of [`Column`], always in that order. The rows of one
+//! A row is one fragment, and its columns are those of [`Column`], always in that order. The rows of one
 //! pixel are adjacent and go from the nearest fragment to the farthest; (`view`, `x`, `y`) is unique in a dataset,
 //! because `view` is the index of the work item.
 //!
@@ -46,6 +46,7 @@ mod column;
 mod error;
 mod folder;
 mod formats;
+mod hash;
 mod manifest;
 mod parts;
 mod plan;
@@ -55,10 +56,13 @@ mod store;
 pub mod summary;
 mod writer;
 
-pub use column::{Column, ColumnKind, ColumnSlice, FragmentBatch};
+pub use column::{
+    Column, ColumnKind, ColumnSlice, ColumnValues, FragmentBatch, PeeledFragment, Typed,
+};
 pub use error::DatasetError;
 pub use folder::replaces;
-pub use formats::{Format, ROW_GROUP_ROWS, sha256};
+pub use formats::{Format, ROW_GROUP_ROWS};
+pub use hash::sha256;
 pub use manifest::{
     CameraInfo, ColumnEntry, FileEntry, MAX_WORK_ITEMS, Manifest, Part, SCHEMA_VERSION, SceneEntry,
 };

@@ -11,7 +11,8 @@ use std::str::FromStr;
 use serde::{Deserialize, Serialize};
 
 use crate::error::DatasetError;
-use crate::formats::{Format, sha256};
+use crate::formats::Format;
+use crate::hash::sha256;
 use crate::manifest::{
     EXTRACT_AGAIN, MAX_WORK_ITEMS, Manifest, Part, SCHEMA_VERSION, SceneEntry, columns,
     hash_of_parts, read_json, to_json,
@@ -185,7 +186,7 @@ impl Plan {
     pub(crate) fn manifest(&self, mut parts: Vec<Part>) -> Manifest {
         parts.sort_by_key(|p| p.index);
         // Records come from outside, with any numbers in them.
-        let sum = |of: fn(&Part) -> u64| parts.iter().map(of).fold(0, u64::saturating_add);
+        let sum = |count: fn(&Part) -> u64| parts.iter().map(count).fold(0, u64::saturating_add);
         let header = self.header.clone();
         Manifest {
             schema: self.schema,

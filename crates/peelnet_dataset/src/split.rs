@@ -120,11 +120,11 @@ impl Split {
 
     /// A split that gives every pixel to one subset.
     pub fn whole(subset: Subset) -> Self {
-        let share = |of: Subset| if subset == of { 1.0 } else { 0.0 };
+        let fraction = |other: Subset| if subset == other { 1.0 } else { 0.0 };
         Self {
             seed: 0,
-            validation: share(Subset::Validation),
-            test: share(Subset::Test),
+            validation: fraction(Subset::Validation),
+            test: fraction(Subset::Test),
         }
     }
 

@@ -19,8 +19,7 @@ use std::sync::Arc;
 use peelnet_core::files::is_remote;
 
 use crate::error::DatasetError;
-use crate::folder::PARTIAL;
-use crate::formats::hash_file;
+use crate::hash::hash_file;
 
 /// The folder of everything that is not rows. Its name begins with `_`: readers of whole folders skip it.
 pub(crate) const META: &str = "_peelnet";
@@ -30,6 +29,9 @@ pub(crate) const PLAN: &str = "_peelnet/plan.json";
 pub(crate) const MANIFEST: &str = "_peelnet/manifest.json";
 /// The records of finished parts.
 pub(crate) const PARTS: &str = "_peelnet/parts";
+/// Prefix of what a writer has in `_peelnet/` until it is finished: a hidden folder with parts, and
+/// small files.
+pub(crate) const PARTIAL: &str = ".partial-";
 /// Prefix of all parts' file names.
 pub(crate) const FRAGMENTS: &str = "fragments-";
 

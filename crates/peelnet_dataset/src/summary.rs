@@ -3,7 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::column::{Column, ColumnSlice, FragmentBatch};
+use crate::column::{CHECKS, Column, FragmentBatch, PixelSums};
 use crate::error::DatasetError;
 use crate::manifest::Manifest;
 use crate::reader::Dataset;
@@ -112,7 +112,7 @@ impl Summary {
     /// # Errors
     /// If a file cannot be read or a value is out of range. Rows that contradict one another are no error but
     /// [`Summary::violations`].
-    pub fn of(dataset: &Dataset) -> Result<Self, DatasetError> {
+    pub fn from_dataset(dataset: &Dataset) -> Result<Self, DatasetError> {
         let mut summary = Self::empty(dataset.manifest());
         for part in &dataset.manifest().parts {
             let mut row = 1;
@@ -139,13 +139,13 @@ impl Summary {
     }
 
     fn empty(manifest: &Manifest) -> Self {
-        let check = |name: &str, formula: &str| Check {
-            name: name.to_owned(),
-            formula: formula.to_owned(),
+        let checks = CHECKS.iter().map(|(column, formula)| Check {
+            name: column.name().to_owned(),
+            formula: (*formula).to_owned(),
             worst: 0.0,
             worst_ratio: 0.0,
             violations: 0,
-        };
+        });
         let rows_by_scene = manifest.rows_by_scene();
         let scenes = manifest.scenes.iter().map(|scene| SceneRows {
             name: scene.name.clone(),
@@ -172,13 +172,7 @@ impl Summary {
             columns: columns.into(),
             fragments_per_pixel: Vec::new(),
             alpha: alpha.collect(),
-            checks: vec![
-                check("transmittance", "|T_i − ∏_{j<i}(1 − α_j)| ≤ 2·n·2⁻²⁴"),
-                check("alpha_sum", "|alpha_sum − Σα| ≤ n·2⁻²⁴·(Σα + 1)"),
-                check("fragment_count", "fragment_count = rows of the pixel"),
-                check("layer", "layer = 0, 1, … n − 1"),
-                check("linear_depth", "z_i ≥ z_{i−1}"),
-            ],
+            checks: checks.collect(),
             violations: Vec::new(),
             parts_not_checked: 0,
         }
@@ -190,10 +184,8 @@ impl Summary {
                 range.min = range.min.min(value);
                 range.max = range.max.max(value);
             };
-            match batch.column(column) {
-                ColumnSlice::F32(v) => v.iter().for_each(|&x| add(x.into())),
-                ColumnSlice::U32(v) => v.iter().for_each(|&x| add(x.into())),
-            }
+            let values = batch.column(column);
+            (0..batch.len()).for_each(|row| add(values.value(row)));
         }
         for &v in &batch.one_minus_alpha {
             let bin = (1.0 - f64::from(v)) * ALPHA_BINS as f64;
@@ -226,28 +218,21 @@ impl Summary {
         bins[bin].count += 1;
 
         let alphas = batch.one_minus_alpha[pixel.clone()].iter();
-        let alpha_sum: f64 = alphas.map(|&v| 1.0 - f64::from(v)).sum();
-        let transmittance_tolerance = peelnet_core::tolerance::transmittance(n);
-        // Σα summed in 32 bits in any order, against a 64-bit sum over the stored 1 − α: n − 1 additions err by at most one unit
-        // roundoff of the sum each, and n times α is recovered from a rounded 1 − α, at most one unit roundoff of 1.
-        let alpha_tolerance = n as f64 * peelnet_core::tolerance::UNIT_ROUNDOFF * (alpha_sum + 1.0);
-        let mut transmittance = 1.0f64;
-        for (rank, i) in pixel.clone().enumerate() {
+        let mut sums = PixelSums {
+            rows: pixel.clone(),
+            alpha_sum: alphas.map(|&v| 1.0 - f64::from(v)).sum(),
+            transmittance: 1.0,
+            lossy,
+        };
+        for i in pixel {
             let place = (file, first_row + i as u64);
-            let [t, sum] = [batch.transmittance[i], batch.alpha_sum[i]].map(f64::from);
-            let [count, layer] = [batch.fragment_count[i], batch.layer[i]].map(f64::from);
-            if !lossy {
-                self.check(0, place, t, transmittance, transmittance_tolerance);
-                self.check(1, place, sum, alpha_sum, alpha_tolerance);
-                self.check(2, place, count, n as f64, 0.0);
-                self.check(3, place, layer, rank as f64, 0.0);
+            for (k, &(column, _)) in CHECKS.iter().enumerate() {
+                if let Some((expected, tolerance)) = batch.expected(column, &sums, i) {
+                    let found = batch.column(column).value(i);
+                    self.check(k, place, found, expected, tolerance);
+                }
             }
-            if rank > 0 {
-                let before = f64::from(batch.linear_depth[i - 1]);
-                let depth = f64::from(batch.linear_depth[i]);
-                self.check(4, place, depth, depth.max(before), 0.0);
-            }
-            transmittance *= f64::from(batch.one_minus_alpha[i]);
+            sums.transmittance *= f64::from(batch.one_minus_alpha[i]);
         }
     }
 

@@ -2,9 +2,9 @@
 
 use crate::{
     PeelError,
-    harvest::{Harvest, Harvester, Peel},
     items::{camera_info, items},
-    rows::{RawTile, RowCounts, make_rows},
+    read_back::{FragmentReader, Peel, RawTile, ReadBack},
+    rows::{RowCounts, make_rows},
 };
 use peelnet_core::files::thousands;
 use peelnet_dataset::{
@@ -126,7 +126,7 @@ pub struct ExtractReport {
 pub(crate) enum Message {
     Begin(Part),
     Tile(RawTile),
-    End(Harvest),
+    End(ReadBack),
 }
 
 /// The maker's end of the channels. Its functions fail with [`PeelError::Interrupted`] once nobody receives any more.
@@ -169,7 +169,7 @@ impl Feed {
         &mut self,
         part: &Part,
         mut each: impl FnMut(&FragmentBatch) -> Result<(), PeelError>,
-    ) -> Result<(Harvest, RowCounts), PeelError> {
+    ) -> Result<(ReadBack, RowCounts), PeelError> {
         let (mut counts, batch) = (RowCounts::default(), &mut self.batch);
         loop {
             match self.messages.recv() {
@@ -198,10 +198,10 @@ pub(crate) fn stream(
         let taken = take(Feed {
             messages,
             give_back,
-            batch: FragmentBatch::with_capacity(ROWS_AT_A_TIME + 4096),
+            batch: FragmentBatch::default(),
         });
-        let made = making.join();
-        match made.unwrap_or_else(|panic| std::panic::resume_unwind(panic)) {
+        let ended = making.join();
+        match ended.unwrap_or_else(|panic| std::panic::resume_unwind(panic)) {
             Ok(()) | Err(PeelError::Interrupted) => taken,
             failed => failed,
         }
@@ -301,7 +301,7 @@ pub(crate) fn write(
 }
 
 /// A scene or a varied copy of one that is on the GPU, behind their numbers.
-type Current = ((u32, u32), Scene, Harvester);
+type Current = ((u32, u32), Scene, FragmentReader);
 
 /// The GPU's side: peels these parts.
 pub(crate) fn peel(
@@ -342,16 +342,17 @@ fn peel_part(
 ) -> Result<(), PeelError> {
     let key = (part.scene, part.copy);
     // The old scene's buffers go before the new one's come.
-    let kept = match current.take().filter(|(of, _, _)| *of == key) {
-        Some(kept) => kept,
+    let uploaded = match current.take().filter(|(number, _, _)| *number == key) {
+        Some(uploaded) => uploaded,
         None => {
             let scene = scene.varied(options.seed, part.copy);
             let (size, sampled) = (options.size, options.pixels < 1.0);
-            let harvester = Harvester::new(gpu, &scene, size, options.peel, sampled, Some(BUDGET))?;
-            (key, scene, harvester)
+            let reader =
+                FragmentReader::new(gpu, &scene, size, options.peel, sampled, Some(BUDGET))?;
+            (key, scene, reader)
         }
     };
-    let (_, scene, harvester) = current.insert(kept);
+    let (_, scene, reader) = current.insert(uploaded);
     let camera = &scene.views[part.view as usize];
     part.camera = camera_info(camera);
     // The hash takes 32 bits of seed; both halves count.
@@ -361,7 +362,7 @@ fn peel_part(
         threshold: peelnet_core::hash::sample_threshold(options.pixels),
     };
     outbox.deliver(Message::Begin(part))?;
-    let found = harvester.harvest(camera, sample, options.max_passes, |tile| outbox.tile(tile))?;
+    let found = reader.read_view(camera, sample, options.max_passes, |tile| outbox.tile(tile))?;
     outbox.deliver(Message::End(found))
 }
 

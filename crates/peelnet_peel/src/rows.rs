@@ -1,23 +1,7 @@
 //! From a tile's runs of fragments to rows of the dataset.
 
-use crate::PeelError;
+use crate::{PeelError, read_back::RawTile};
 use peelnet_dataset::{FragmentBatch, Part};
-
-/// What a tile left in GPU storage, read back.
-#[derive(Debug, Default)]
-pub struct RawTile {
-    /// Row-major index of the first pixel.
-    pub first_pixel: u32,
-    /// First fragment of each pixel and the total, counted from the tile's first fragment.
-    pub offsets: Vec<u32>,
-    /// Linear depths; 0 in a slot that peeling left empty.
-    pub depths: Vec<f32>,
-    /// Un-premultiplied linear radiance and alpha.
-    pub colors: Vec<[f32; 4]>,
-    /// Indices in the scene's list of triangles, which is the order of drawing; empty unless asked for, see
-    /// [`Harvester::keep_triangles`](crate::harvest::Harvester::keep_triangles).
-    pub triangles: Vec<u32>,
-}
 
 /// What was noticed on the way.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -29,10 +13,6 @@ pub struct RowCounts {
     /// Neighbours of equal depth.
     pub coplanar: u64,
 }
-
-/// Fragments of a pixel beyond which sums and products are formed in 64 bits: `n` factors formed in 32 bits err by up to `2n` roundings
-/// of 2⁻²⁴, a hundredth at 100,000. Rows of shorter runs keep the bits that they have always had.
-const LONG: usize = 1500;
 
 /// Makes the rows of a part's tile in `batch`, which is empty, and calls `flush` whenever it holds `chunk` rows or more (pixels stay
 /// whole) and once at the end.
@@ -47,13 +27,8 @@ pub fn make_rows(
     counts: &mut RowCounts,
     mut flush: impl FnMut(&FragmentBatch) -> Result<(), PeelError>,
 ) -> Result<(), PeelError> {
-    let mut unsorted = 0;
+    let (clip, mut unsorted) = ([part.camera.near, part.camera.far], 0);
     let mut flush = |batch: &mut FragmentBatch| {
-        // The columns that all rows of a view share.
-        let rows = batch.layer.len();
-        batch.view.resize(rows, part.index);
-        batch.near.resize(rows, part.camera.near);
-        batch.far.resize(rows, part.camera.far);
         let flushed = flush(batch);
         batch.clear();
         flushed
@@ -63,47 +38,18 @@ pub fn make_rows(
         if run.is_empty() {
             continue;
         }
-        let (mut n, mut alpha_sum, mut long_sum) = (0u32, 0.0f32, 0.0f64);
-        for i in run.clone().filter(|&i| tile.depths[i] > 0.0) {
-            n += 1;
-            alpha_sum += tile.colors[i][3];
-            long_sum += f64::from(tile.colors[i][3]);
-        }
-        let is_long = run.len() > LONG;
-        if is_long {
-            alpha_sum = long_sum as f32;
-        }
-        counts.lost += u64::from(run.len() as u32 - n);
-        counts.rows += u64::from(n);
-        let (mut transmittance, mut long_product) = (1.0f32, 1.0f64);
         let mut before = 0.0;
-        for (layer, i) in (0..).zip(run.filter(|&i| tile.depths[i] > 0.0)) {
-            let depth = tile.depths[i];
-            let [r, g, b, alpha] = tile.colors[i];
+        for &depth in tile.depths[run.clone()].iter().filter(|z| **z > 0.0) {
             counts.coplanar += u64::from(depth == before);
             unsorted += u64::from(depth < before);
             before = depth;
-            let through = 1.0 - alpha;
-            batch.one_minus_alpha.push(through);
-            batch.linear_depth.push(depth);
-            batch.transmittance.push(transmittance);
-            batch.layer.push(layer);
-            batch.r.push(r);
-            batch.g.push(g);
-            batch.b.push(b);
-            transmittance *= through;
-            if is_long {
-                long_product *= 1.0 - f64::from(alpha);
-                transmittance = long_product as f32;
-            }
         }
-        // The columns that a pixel's rows share.
-        let rows = batch.layer.len();
-        batch.alpha_sum.resize(rows, alpha_sum);
-        batch.fragment_count.resize(rows, n);
-        batch.x.resize(rows, pixel % part.width);
-        batch.y.resize(rows, pixel / part.width);
-        if rows >= chunk {
+        let slots = run.len() as u32;
+        let pixel = [part.index, pixel % part.width, pixel / part.width];
+        let rows = batch.push_pixel(pixel, clip, run.map(|slot| tile.fragment(slot)));
+        counts.lost += u64::from(slots - rows);
+        counts.rows += u64::from(rows);
+        if batch.len() >= chunk {
             flush(batch)?;
         }
     }

@@ -9,8 +9,7 @@
 use crate::{
     ExtractOptions, ExtractReport, PeelError, Progress,
     extract::{Message, Outbox, write},
-    harvest::Harvest,
-    rows::RawTile,
+    read_back::{RawTile, ReadBack},
 };
 use peelnet_core::random::Random;
 use peelnet_dataset::{CameraInfo, Header, MAX_WORK_ITEMS, Part, SceneEntry, worker_name};
@@ -225,7 +224,7 @@ fn make(seed: u64, index: u32, lists: u64, outbox: &Outbox) -> Result<(), PeelEr
         ..Part::default()
     }))?;
     outbox.tile(&mut tile)?;
-    outbox.deliver(Message::End(Harvest::default()))
+    outbox.deliver(Message::End(ReadBack::default()))
 }
 
 /// A tile of a world's lists, sorted, and clip distances around them.

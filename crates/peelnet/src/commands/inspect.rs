@@ -56,7 +56,7 @@ pub(super) fn run(context: &Context<'_>, args: &InspectArgs) -> Result<(), Failu
 fn dataset(context: &Context<'_>, path: &Path) -> Result<(), Failure> {
     let dataset = Dataset::open(path)?;
     dataset.verify()?;
-    let summary = Summary::of(&dataset)?;
+    let summary = Summary::from_dataset(&dataset)?;
     let m = dataset.manifest();
     let text = || {
         let [version, adapter, peel] = [&m.tool_version, &m.adapter, &m.peel].map(|t| printable(t));

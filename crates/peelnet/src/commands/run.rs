@@ -191,7 +191,7 @@ impl Run<'_> {
         let report = extract::peel(self.context, &self.gpu, self.scenes, &options)?;
         self.done("extract", extract::text(&folder, &report))?;
         let dataset = Dataset::open(&folder)?;
-        let summary = Summary::of(&dataset)?;
+        let summary = Summary::from_dataset(&dataset)?;
         let text = summary_text(&summary);
         let json = format!("{:#}\n", json!(summary));
         write_file(&out.join("dataset-summary.json"), json)?;

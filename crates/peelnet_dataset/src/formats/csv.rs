@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
 
-use super::{PartSink, PartSource, check_names};
+use super::part_file::{PartSink, PartSource, check_names};
 use crate::column::{Column, ColumnMut, ColumnSlice, FragmentBatch};
 use crate::error::DatasetError;
 use crate::store::Fetched;
@@ -184,17 +184,13 @@ impl PartSource for CsvSource {
             for &column in &self.columns {
                 let field = &self.record[column.index()];
                 let text = std::str::from_utf8(field).ok();
-                let (parsed, kind) = match rows.column_mut(column) {
-                    ColumnMut::F32(v) => {
-                        (text.and_then(|t| t.parse().ok()).map(|x| v.push(x)), "f32")
-                    }
-                    ColumnMut::U32(v) => {
-                        (text.and_then(|t| t.parse().ok()).map(|x| v.push(x)), "u32")
-                    }
+                let parsed = match rows.column_mut(column) {
+                    ColumnMut::F32(v) => text.and_then(|t| t.parse().ok()).map(|x| v.push(x)),
+                    ColumnMut::U32(v) => text.and_then(|t| t.parse().ok()).map(|x| v.push(x)),
                 };
                 if parsed.is_none() {
                     let line = self.record.position().map_or(0, csv::Position::line);
-                    let text = String::from_utf8_lossy(field);
+                    let (text, kind) = (String::from_utf8_lossy(field), column.kind().name());
                     let text = peelnet_core::files::printable(&text);
                     let reason = format!(
                         "line {line}, column {column}: {text:?} is not a number of type {kind}; fix the line or write the dataset again"

@@ -8,7 +8,7 @@ use std::fs::File;
 use std::io::{BufReader, BufWriter, Read as _, Seek as _, Write as _};
 use std::path::PathBuf;
 
-use super::{PartSink, PartSource};
+use super::part_file::{PartSink, PartSource};
 use crate::column::{Column, ColumnKind, ColumnMut, ColumnSlice, FragmentBatch};
 use crate::error::DatasetError;
 use crate::store::Fetched;

@@ -28,10 +28,13 @@ use parquet::schema::types::{ColumnDescPtr, Type, TypePtr};
 
 use rayon::prelude::*;
 
-use super::{PartSink, PartSource, ROW_GROUP_ROWS, check_names};
+use super::part_file::{PartSink, PartSource, check_names};
 use crate::column::{Column, ColumnKind, ColumnMut, ColumnSlice, FragmentBatch};
 use crate::error::DatasetError;
 use crate::store::Fetched;
+
+/// Rows of a full row group of Parquet.
+pub const ROW_GROUP_ROWS: usize = 1 << 20;
 
 /// Rows of a page: 512 KiB of values, small enough for the caches.
 const PAGE_ROWS: usize = 1 << 17;

@@ -24,29 +24,15 @@ fn view(index: u32, pixels: u32, seed: u64) -> FragmentBatch {
         .collect();
     for p in 0..pixels {
         let n = 1 + random.bits() % 12;
-        let (mut depth, mut t, mut sum) = (0.5f32, 1.0f32, 0.0f32);
-        for layer in 0..n {
+        let mut depth = 0.5f32;
+        let fragment = |_| {
             depth += random.unit();
-            let [r, g, b, alpha] = palette[random.below(16)];
-            sum += alpha;
-            rows.one_minus_alpha.push(1.0 - alpha);
-            rows.linear_depth.push(depth);
-            rows.transmittance.push(t);
-            rows.layer.push(layer);
-            rows.r.push(r);
-            rows.g.push(g);
-            rows.b.push(b);
-            t *= 1.0 - alpha;
-        }
-        let end = rows.len();
-        rows.alpha_sum.resize(end, sum);
-        rows.fragment_count.resize(end, n);
-        rows.x.resize(end, p % 640);
-        rows.y.resize(end, p / 640);
+            PeeledFragment::new(depth, palette[random.below(16)])
+        };
+        let fragments: Vec<PeeledFragment> = (0..n).map(fragment).collect();
+        let pixel = [index, p % 640, p / 640];
+        rows.push_pixel(pixel, [0.1, 100.0], fragments.into_iter());
     }
-    rows.view.resize(rows.len(), index);
-    rows.near.resize(rows.len(), 0.1);
-    rows.far.resize(rows.len(), 100.0);
     rows
 }
 
@@ -132,7 +118,7 @@ fn write_one(folder: &Path, format: Format, rows: &FragmentBatch, batch_rows: us
 }
 
 /// Bit patterns, so that −0 and 0 differ.
-fn bits(rows: &FragmentBatch) -> [Vec<u32>; 14] {
+fn bits(rows: &FragmentBatch) -> [Vec<u32>; Column::ALL.len()] {
     Column::ALL.map(|c| match rows.column(c) {
         ColumnSlice::F32(v) => v.iter().map(|x| x.to_bits()).collect(),
         ColumnSlice::U32(v) => v.to_vec(),

@@ -9,7 +9,9 @@ use std::num::NonZeroUsize;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use peelnet_dataset::{Dataset, DatasetWriter, Format, FragmentBatch, Header, Part, SceneEntry};
+use peelnet_dataset::{
+    Dataset, DatasetWriter, Format, FragmentBatch, Header, Part, PeeledFragment, SceneEntry,
+};
 use peelnet_model::Model;
 use peelnet_train::{
     Config, End, Outcome, RunOptions, TrainError, TrainingData, checkpoint_folder, train,
@@ -155,27 +157,14 @@ fn write_views(
 /// Appends a pixel (view, x, y) with these depths and opacities, nearest first.
 fn push_pixel(
     batch: &mut FragmentBatch,
-    [view, x, y]: [u32; 3],
+    pixel: [u32; 3],
     points: &[(f32, f32)],
     mut color: impl FnMut() -> [f32; 3],
 ) {
-    let mut through = 1.0;
-    for (layer, &(depth, alpha)) in points.iter().enumerate() {
+    let fragment = |&(depth, alpha): &(f32, f32)| {
         let [r, g, b] = color();
-        batch.one_minus_alpha.push(1.0 - alpha);
-        batch.linear_depth.push(depth);
-        batch.alpha_sum.push(points.iter().map(|p| p.1).sum());
-        batch.fragment_count.push(points.len() as u32);
-        batch.transmittance.push(through);
-        batch.view.push(view);
-        batch.x.push(x);
-        batch.y.push(y);
-        batch.layer.push(layer as u32);
-        batch.r.push(r);
-        batch.g.push(g);
-        batch.b.push(b);
-        batch.near.push(0.1);
-        batch.far.push(100.0);
-        through *= 1.0 - alpha;
-    }
+        PeeledFragment::new(depth, [r, g, b, alpha])
+    };
+    let fragments: Vec<PeeledFragment> = points.iter().map(fragment).collect();
+    batch.push_pixel(pixel, [0.1, 100.0], fragments.into_iter());
 }

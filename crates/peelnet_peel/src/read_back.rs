@@ -1,8 +1,9 @@
 //! Finds all fragments of a view, tile by tile, in one of three ways that leave the same runs in storage.
 
-use crate::{PeelError, rows::RawTile};
+use crate::PeelError;
 use bytemuck::{Pod, Zeroable};
 use peelnet_core::absorbance::DepthWarp;
+use peelnet_dataset::PeeledFragment;
 use peelnet_render::geometry::{
     FrameTargets, PixelSample, SamplePoint, SceneBuffers,
     count::{CountPass, FragmentCount},
@@ -57,6 +58,32 @@ impl fmt::Display for Peel {
     }
 }
 
+/// What a tile left in GPU storage, read back.
+#[derive(Debug, Default)]
+pub struct RawTile {
+    /// Row-major index of the first pixel.
+    pub first_pixel: u32,
+    /// First fragment of each pixel and the total, counted from the tile's first fragment.
+    pub offsets: Vec<u32>,
+    /// Linear depths; 0 in a slot that peeling left empty.
+    pub depths: Vec<f32>,
+    /// Un-premultiplied linear radiance and alpha.
+    pub colors: Vec<[f32; 4]>,
+    /// Indices in the scene's list of triangles, which is the order of drawing; empty unless asked for, see
+    /// [`FragmentReader::keep_triangles`].
+    pub triangles: Vec<u32>,
+}
+
+impl RawTile {
+    /// The fragment in a slot, as rows say it.
+    pub(crate) fn fragment(&self, slot: usize) -> PeeledFragment {
+        PeeledFragment {
+            depth: self.depths[slot],
+            color: self.colors[slot],
+        }
+    }
+}
+
 /// Layout of `Step` in `peel/collect_dual.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
@@ -75,7 +102,7 @@ enum Peeler {
 
 /// A scene made ready for peeling at one frame size.
 #[derive(Debug)]
-pub struct Harvester {
+pub struct FragmentReader {
     gpu: Gpu,
     scene: SceneBuffers,
     frame: FrameTargets,
@@ -91,7 +118,7 @@ pub struct Harvester {
 
 /// What was found in one view.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Harvest {
+pub struct ReadBack {
     /// Fragments of its fullest pixel.
     pub max_layers: u32,
     /// Tiles it took.
@@ -100,7 +127,7 @@ pub struct Harvest {
     pub gpu_micros: f64,
 }
 
-impl Harvester {
+impl FragmentReader {
     /// Uploads a scene. `sampled` if views will be given a real [`PixelSample`]; `budget` bounds a tile's fragments.
     ///
     /// # Errors
@@ -154,17 +181,17 @@ impl Harvester {
     }
 
     /// Finds a view's fragments and hands each tile over. `ready` may take it, and leave another whose memory is used, and it may end the
-    /// harvest by an error.
+    /// reading by an error.
     ///
     /// # Errors
     /// A lost device, a pixel beyond the budget, or what `ready` returns.
-    pub fn harvest(
+    pub fn read_view(
         &mut self,
         camera: &Camera,
         sample: PixelSample,
         max_passes: Option<u32>,
         mut ready: impl FnMut(&mut RawTile) -> Result<(), PeelError>,
-    ) -> Result<Harvest, PeelError> {
+    ) -> Result<ReadBack, PeelError> {
         // Handles, so that storage can be planned while it records.
         let (gpu, mut raw) = (&self.gpu.clone(), std::mem::take(&mut self.tile));
         let (mut encoder, mut timer) = (gpu.encoder(), Timer::new(gpu));
@@ -203,7 +230,7 @@ impl Harvester {
         let times = timer.finish(gpu, &mut encoder);
         gpu.queue.submit([encoder.finish()]);
         let times = gpu.block_on(times)?;
-        Ok(Harvest {
+        Ok(ReadBack {
             max_layers: found.most,
             tiles: tiles.len() as u32,
             gpu_micros: times.iter().map(|t| t.micros).sum(),
