@@ -18,7 +18,7 @@ use peelnet_render::{
 use peelnet_scene::Scene;
 use std::path::Path;
 
-pub const EXACT: &str = role::REFERENCE;
+pub use crate::stage::EXACT;
 
 #[derive(Clone, Debug)]
 pub struct Plan<'a> {

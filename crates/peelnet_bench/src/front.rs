@@ -1,5 +1,6 @@
 //! Error against time: a point for every method and its parameters, and the Pareto front of them.
 
+pub use crate::rows::EXACT_MSE;
 use crate::{
     metrics::mark_front,
     rows::{Bytes, Rows, mean},
@@ -8,10 +9,6 @@ use peelnet_render::{MethodSpec, role};
 
 /// What times are ratios to: hardware blending in the scene's order, without sorting.
 pub const BASE: &str = role::HARDWARE_BLENDING;
-
-/// Errors below count as this: a mean squared error of (1e-5)², the agreement that exact methods are held to, in linear
-/// light. It keeps geometric means and logarithmic axes finite.
-pub const EXACT_MSE: f64 = 1e-10;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mean {

@@ -1,10 +1,11 @@
 //! What is written to the files of results. `docs/results-files.md` says what each field is, and its unit.
 
-use crate::{designs::MOTIONS, scaling::Series};
+use crate::designs::MOTIONS;
 use peelnet_core::methods::slabs::Kept;
 use peelnet_model::PixelLoss;
 use peelnet_render::Property;
 use serde::{Deserialize, Serialize};
+use std::fmt;
 
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Machine {
@@ -289,4 +290,25 @@ pub struct Designs {
     pub epochs: u32,
     pub references: Vec<Reference>,
     pub rows: Vec<DesignRow>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Series {
+    /// Fragments of every pixel, 1 … 256, at 256×192.
+    Fragments,
+    /// Pixels of the frame, 64×48 … 1024×768, with eight fragments each.
+    Pixels,
+    /// Triangles, 16 … 2²⁰, with eight fragments a pixel at 256×192.
+    Triangles,
+}
+
+impl Series {
+    pub const ALL: [Self; 3] = [Self::Fragments, Self::Pixels, Self::Triangles];
+}
+
+impl fmt::Display for Series {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(["fragments", "pixels", "triangles"][*self as usize])
+    }
 }

@@ -3,7 +3,7 @@
 //! The scenes are stacks of walls that fill the frame, so that every pixel holds the same number of fragments and one quantity
 //! changes at a time.
 
-pub use crate::records::{Exponent, Growth, LeftOut, Scaling};
+pub use crate::records::{Exponent, Growth, LeftOut, Scaling, Series};
 
 use crate::{
     EvalError,
@@ -16,32 +16,10 @@ use glam::Vec3;
 use peelnet_render::MethodOptions;
 use peelnet_render::gpu::Gpu;
 use peelnet_scene::{Camera, Material, Object, Scene};
-use serde::{Deserialize, Serialize};
-use std::{fmt, sync::atomic::AtomicBool};
+use std::sync::atomic::AtomicBool;
 
 /// A method whose frame takes longer is not drawn in the larger steps of that series, milliseconds.
 const PATIENCE_MS: f64 = 3000.0;
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Series {
-    /// Fragments of every pixel, 1 … 256, at 256×192.
-    Fragments,
-    /// Pixels of the frame, 64×48 … 1024×768, with eight fragments each.
-    Pixels,
-    /// Triangles, 16 … 2²⁰, with eight fragments a pixel at 256×192.
-    Triangles,
-}
-
-impl Series {
-    pub const ALL: [Self; 3] = [Self::Fragments, Self::Pixels, Self::Triangles];
-}
-
-impl fmt::Display for Series {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(["fragments", "pixels", "triangles"][*self as usize])
-    }
-}
 
 struct Step {
     series: Series,

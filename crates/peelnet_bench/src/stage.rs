@@ -1,6 +1,6 @@
 //! Scenes on the GPU and methods that draw them, frames in turn, and what is reported of both.
 
-use crate::{EvalError, compare::EXACT};
+use crate::EvalError;
 use glam::Vec3;
 use peelnet_render::gpu::Gpu;
 use peelnet_render::{
@@ -8,6 +8,9 @@ use peelnet_render::{
 };
 use peelnet_scene::{Camera, Scene};
 use std::sync::atomic::{AtomicBool, Ordering};
+
+/// What all others are compared with.
+pub const EXACT: &str = peelnet_render::role::REFERENCE;
 
 #[derive(Debug)]
 pub enum Progress {

@@ -1,8 +1,5 @@
 //! What a scene may take in all, so that a small file cannot ask for endless memory. It is counted before the memory is taken.
 
-use crate::{Camera, Object};
-use glam::Vec3;
-
 /// Most triangles of the meshes that are generated, copied, instanced, or read from files whose headers count them.
 pub(crate) const MAX_TRIANGLES: u64 = 50_000_000;
 
@@ -23,33 +20,6 @@ pub const MAX_LIGHTS: usize = 16_384;
 
 /// Farthest from the origin that anything lies, scene units: squares of larger numbers overflow.
 pub(crate) const MAX_COORDINATE: f32 = 1e16;
-
-/// Farthest from the origin that an object of a scene file lies, in distances `far`: of the 24 bits of its vertices' coordinates, 8 are left for
-/// what the camera sees. Rasterisers lose larger triangles, or halves of quads, without an error.
-const MAX_REACH: f32 = 65_536.0;
-
-/// Checks that the coordinates of an object in the world can be drawn.
-pub(crate) fn check_reach(object: &Object, views: &[Camera]) -> Result<(), String> {
-    let Some((low, high)) = object.mesh.bounds() else {
-        return Ok(());
-    };
-    let vertex = |i: usize| Vec3::from_array([0, 1, 2].map(|k| [low, high][i >> k & 1][k]));
-    let vertices = (0..8).map(|i| object.world_from_object.transform_point3(vertex(i)));
-    let distances = vertices.map(|p| match p.is_finite() {
-        true => p.abs().max_element(),
-        false => f32::INFINITY,
-    });
-    let farthest = distances.fold(0.0, f32::max);
-    let far = views.iter().fold(0.0f32, |m, view| m.max(view.far));
-    let limit = (MAX_REACH * far).min(MAX_COORDINATE);
-    if farthest <= limit {
-        return Ok(());
-    }
-    Err(format!(
-        "reaches {farthest:e} from the origin: at most {limit:e}, which is {MAX_REACH} times the camera's far or what 32-bit numbers hold; \
-         make it smaller, or far larger"
-    ))
-}
 
 /// What a scene has taken.
 #[derive(Default)]

@@ -12,13 +12,15 @@ mod views;
 pub use edited::Edited;
 
 use crate::{
-    budget::{self, MAX_INSTANCED},
+    budget::{self, MAX_COORDINATE, MAX_INSTANCED},
+    camera::Camera,
     error::SceneError,
     files::{Files, MAX_TEXT},
     import,
     material::Lighting,
-    scene::{Scene, State},
+    scene::{Object, Scene, State},
 };
+use glam::Vec3;
 use loader::Loader;
 use raw::RawScene;
 use std::{io, path::Path};
@@ -168,7 +170,7 @@ fn assemble(raw: RawScene, mut loader: Loader<'_>, time: Option<f32>) -> Result<
     budget::check(all.sum(), MAX_INSTANCED, "triangles of all objects")
         .map_err(|e| loader.value("object", e))?;
     for object in &objects {
-        budget::check_reach(object, &views)
+        check_reach(object, &views)
             .map_err(|e| loader.value(&peelnet_core::files::printable(&object.name), e))?;
     }
     if !raw.timeline.is_empty() {
@@ -198,4 +200,31 @@ fn assemble(raw: RawScene, mut loader: Loader<'_>, time: Option<f32>) -> Result<
 fn name_of(path: &Path) -> String {
     path.file_stem()
         .map_or_else(|| "scene".into(), |s| s.to_string_lossy().into_owned())
+}
+
+/// Farthest from the origin that an object of a scene file lies, in distances `far`: of the 24 bits of its vertices' coordinates, 8 are left for
+/// what the camera sees. Rasterisers lose larger triangles, or halves of quads, without an error.
+const MAX_REACH: f32 = 65_536.0;
+
+/// Checks that the coordinates of an object in the world can be drawn.
+fn check_reach(object: &Object, views: &[Camera]) -> Result<(), String> {
+    let Some((low, high)) = object.mesh.bounds() else {
+        return Ok(());
+    };
+    let vertex = |i: usize| Vec3::from_array([0, 1, 2].map(|k| [low, high][i >> k & 1][k]));
+    let vertices = (0..8).map(|i| object.world_from_object.transform_point3(vertex(i)));
+    let distances = vertices.map(|p| match p.is_finite() {
+        true => p.abs().max_element(),
+        false => f32::INFINITY,
+    });
+    let farthest = distances.fold(0.0, f32::max);
+    let far = views.iter().fold(0.0f32, |m, view| m.max(view.far));
+    let limit = (MAX_REACH * far).min(MAX_COORDINATE);
+    if farthest <= limit {
+        return Ok(());
+    }
+    Err(format!(
+        "reaches {farthest:e} from the origin: at most {limit:e}, which is {MAX_REACH} times the camera's far or what 32-bit numbers hold; \
+         make it smaller, or far larger"
+    ))
 }

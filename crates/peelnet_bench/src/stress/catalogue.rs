@@ -369,8 +369,6 @@ const PLANES: [f32; 2] = [0.01, 2e4];
 /// Those of scenes whose surfaces are no stacks.
 const NARROW: [f32; 2] = [0.1, 100.0];
 
-pub(super) const BACKGROUND: [f32; 3] = [0.25, 0.5, 0.75];
-
 /// (depth, α) with colours by a rule.
 fn rainbow(layers: &[(f32, f32)]) -> Vec<Fragment> {
     let color = |i: usize| {

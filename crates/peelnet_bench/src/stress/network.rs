@@ -1,11 +1,11 @@
 //! Cases that evaluate a network without drawing.
 
-use super::{Property, properties::Findings};
+use super::properties::Findings;
 use peelnet_core::{random::Random, tolerance::EXPORT_F16};
 use peelnet_export::ExportError;
 use peelnet_model::Model;
-use peelnet_render::LearnedWeight;
 use peelnet_render::gpu::Gpu;
+use peelnet_render::{LearnedWeight, Property};
 
 /// Inputs that are drawn at random.
 const RANDOM: usize = 16_384;

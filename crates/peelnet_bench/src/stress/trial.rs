@@ -1,6 +1,6 @@
 //! A scene with the fragments of each of its pixels: known beforehand, or found by the 64-bit judge.
 
-use super::{catalogue::BACKGROUND, judge};
+use super::judge;
 use crate::stage::{camera, quad};
 use glam::Vec3;
 use peelnet_core::{
@@ -10,6 +10,8 @@ use peelnet_core::{
     methods::over,
 };
 use peelnet_scene::{Material, Object, Scene};
+
+pub(super) const BACKGROUND: [f32; 3] = [0.25, 0.5, 0.75];
 
 /// Layers that cover some pixels of the frame whole.
 pub struct Stack {
