@@ -13,7 +13,7 @@ use crate::{
 use peelnet_model::Model;
 use peelnet_render::gpu::{Gpu, record::PassTime};
 use peelnet_render::{
-    Frame, Image, LearnedWeight, MethodOptions, MethodSpec, Profile, milliseconds, of_method, role,
+    Frame, Image, LearnedWeight, MethodOptions, MethodSpec, Profile, milliseconds, of_method,
 };
 use peelnet_scene::Scene;
 use std::path::Path;

@@ -10,7 +10,7 @@ use crate::{
     messages::Messages,
     numbers::{EXACT, Judge, Key, LayerCounter},
     output::Output,
-    panels,
+    panels::state::State,
     script::Script,
     slot::{Network, Slot},
     stage::{Source, Stage},
@@ -99,7 +99,7 @@ pub(crate) struct App {
     pub messages: Messages,
     pub watch: Watch,
     pub recent: Vec<PathBuf>,
-    pub panels: panels::State,
+    pub panels: State,
     pub size: [u32; 2],
     script: Option<Script>,
     pub display: Display,
@@ -109,7 +109,7 @@ pub(crate) struct App {
     /// Clock time of the last frames' work on the CPU, milliseconds.
     pub cpu_ms: f64,
     #[cfg(target_arch = "wasm32")]
-    pub page: crate::web::InPage,
+    pub page: crate::web::in_page::InPage,
 }
 
 impl App {
@@ -143,7 +143,7 @@ impl App {
             messages: Messages::default(),
             watch: Watch::default(),
             recent,
-            panels: panels::State::new(start.bare),
+            panels: State::new(start.bare),
             size: [0; 2],
             script: start.script,
             display: Display::new(gpu),
@@ -151,7 +151,7 @@ impl App {
             rest: None,
             cpu_ms: 0.0,
             #[cfg(target_arch = "wasm32")]
-            page: crate::web::InPage::default(),
+            page: crate::web::in_page::InPage::default(),
         };
         match start.loaded {
             Some(scene) => app.take(Stage::of_scene(gpu, source, scene)),
@@ -384,7 +384,7 @@ impl App {
         self.take_dropped(&ctx);
         self.take_keys(&ctx);
         self.advance(&ctx);
-        panels::show(self, ui, egui);
+        self.show_panels(ui, egui);
         self.measure(&ctx);
         #[cfg(target_arch = "wasm32")]
         self.show_address(&ctx);

@@ -25,6 +25,7 @@ mod messages;
 mod numbers;
 mod output;
 mod panels;
+mod saving;
 mod script;
 mod slot;
 mod stage;

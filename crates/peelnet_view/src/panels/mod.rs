@@ -6,6 +6,7 @@ mod numbers;
 mod output;
 mod pixel;
 mod scene;
+pub(crate) mod state;
 mod top;
 
 use crate::app::App;
@@ -15,74 +16,44 @@ use egui::{CentralPanel, Panel, ScrollArea, Ui};
 /// Windows narrower than this have one column below the picture instead of two beside it, points.
 const NARROW: f32 = 760.0;
 
-/// Which panels are open, what is typed into them, and what moves.
-#[derive(Default)]
-pub(crate) struct State {
-    pub bare: bool,
-    pub left: bool,
-    pub right: bool,
-    /// Whether errors are measured when the view rests.
-    pub measures: bool,
-    pub help: bool,
-    pub plays: bool,
-    /// Whether the eye goes round.
-    pub turns: bool,
-    pub path: String,
-    pub model: String,
-    pub object: usize,
-    pub listed: bool,
-    pub frames: u32,
-}
-
-impl State {
-    pub fn new(bare: bool) -> Self {
-        Self {
-            bare,
-            left: true,
-            right: true,
-            measures: true,
-            frames: 48,
-            ..Self::default()
+impl App {
+    pub(crate) fn show_panels(&mut self, ui: &mut Ui, egui: &RenderState) {
+        self.panels.bare ^= ui.input_mut(|i| i.consume_key(egui::Modifiers::NONE, egui::Key::Tab));
+        if self.panels.bare {
+            CentralPanel::no_frame().show(ui, |ui| self.show_viewport(ui, egui));
+            return;
         }
-    }
-}
-
-pub(crate) fn show(app: &mut App, ui: &mut Ui, egui: &RenderState) {
-    app.panels.bare ^= ui.input_mut(|i| i.consume_key(egui::Modifiers::NONE, egui::Key::Tab));
-    if app.panels.bare {
-        CentralPanel::no_frame().show(ui, |ui| app.show_viewport(ui, egui));
-        return;
-    }
-    Panel::top("top").show(ui, |ui| top::show(app, ui));
-    if !app.messages.0.is_empty() {
-        Panel::bottom("messages").show(ui, |ui| app.messages.show(ui));
-    }
-    if app.stage.as_ref().is_some_and(|s| s.times().is_some()) {
-        Panel::bottom("timeline").show(ui, |ui| scene::timeline(app, ui));
-    }
-    let (left, right) = (app.panels.left, app.panels.right);
-    if ui.available_width() < NARROW {
-        if left || right {
-            let height = 0.45 * ui.available_height();
-            column(Panel::bottom("column"), height, ui, |ui| {
-                if left {
-                    controls(app, ui);
-                }
-                if right {
-                    results(app, ui);
-                }
-            });
+        Panel::top("top").show(ui, |ui| top::show(self, ui));
+        if !self.messages.0.is_empty() {
+            Panel::bottom("messages").show(ui, |ui| self.messages.show(ui));
         }
-    } else {
-        if left {
-            column(Panel::left("controls"), 300.0, ui, |ui| controls(app, ui));
+        if self.stage.as_ref().is_some_and(|s| s.times().is_some()) {
+            Panel::bottom("timeline").show(ui, |ui| scene::timeline(self, ui));
         }
-        if right {
-            column(Panel::right("results"), 340.0, ui, |ui| results(app, ui));
+        let (left, right) = (self.panels.left, self.panels.right);
+        if ui.available_width() < NARROW {
+            if left || right {
+                let height = 0.45 * ui.available_height();
+                column(Panel::bottom("column"), height, ui, |ui| {
+                    if left {
+                        controls(self, ui);
+                    }
+                    if right {
+                        results(self, ui);
+                    }
+                });
+            }
+        } else {
+            if left {
+                column(Panel::left("controls"), 300.0, ui, |ui| controls(self, ui));
+            }
+            if right {
+                column(Panel::right("results"), 340.0, ui, |ui| results(self, ui));
+            }
         }
+        CentralPanel::no_frame().show(ui, |ui| self.show_viewport(ui, egui));
+        top::help(self, ui);
     }
-    CentralPanel::no_frame().show(ui, |ui| app.show_viewport(ui, egui));
-    top::help(app, ui);
 }
 
 fn column(panel: Panel, size: f32, ui: &mut Ui, add: impl FnOnce(&mut Ui)) {

@@ -34,7 +34,7 @@ pub(super) async fn read(dropped: Vec<DroppedFileHandle>) -> Fallible<Files> {
 pub(crate) fn choose_files(ui: &mut Ui) {
     ui.label("Drop files onto the page, or");
     if ui.button("Choose files").clicked() {
-        let input = super::element("files");
+        let input = super::dom::element("files");
         if let Some(input) = input.and_then(|i| i.dyn_into::<web_sys::HtmlElement>().ok()) {
             input.click();
         }

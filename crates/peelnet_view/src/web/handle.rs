@@ -1,6 +1,6 @@
 //! What the page's own script, and tests, do with the viewer.
 
-use super::{Shelf, say};
+use super::{dom::show_message, shelf::Shelf};
 use crate::{
     app::App,
     eye,
@@ -66,7 +66,7 @@ impl Page {
             shelf: Rc::new(shelf),
         };
         page.begin(query, None).await?;
-        say("");
+        show_message("");
         Ok(page)
     }
 

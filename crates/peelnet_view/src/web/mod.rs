@@ -1,7 +1,9 @@
 //! The viewer in a web page: how it begins, and how it begins again after the browser took its graphics device away.
 
+mod dom;
 mod files;
 mod handle;
+pub(crate) mod in_page;
 mod shelf;
 
 use crate::{
@@ -9,11 +11,12 @@ use crate::{
     app::{App, Start, configuration},
     compare::Compare,
     memory,
-    panels::State,
+    panels::state::State,
     slot::Network,
     stage::{Files, Source},
     task::{Fallible, Task, one_line, repaints},
 };
+use dom::show_message;
 use egui::{FontData, FontDefinitions, FontFamily};
 pub(crate) use files::{choose_files, download};
 pub use handle::Page;
@@ -30,35 +33,6 @@ const FIRST: (&str, &str) = ("cups", "deep-medium");
 const ADDRESS: f64 = 0.5;
 /// Devices that are opened one after the other before the page gives up.
 const MOST_LOST: u32 = 5;
-
-/// What an application in a page has besides.
-#[derive(Default)]
-pub(crate) struct InPage {
-    /// Draws the page again.
-    context: egui::Context,
-    reading: Option<Task<Fallible<Files>>>,
-    /// What the address says, and when it was written.
-    address: (String, f64),
-    drawing: Option<Task<()>>,
-    /// Begins again with another device, and has the scene that the browser keeps.
-    handle: Option<Page>,
-}
-
-impl InPage {
-    /// Whether the GPU is still drawing the last frame. A browser takes frames faster than a slow GPU draws them: what methods read back
-    /// of a frame, and what is dragged, would wait behind all of them.
-    pub fn is_drawing(&mut self, ui: &egui::Context) -> bool {
-        Task::finish(&mut self.drawing, ui);
-        self.drawing.is_some()
-    }
-
-    pub fn drew(&mut self, gpu: &Gpu, ui: &egui::Context) {
-        let gpu = gpu.clone();
-        self.drawing = Some(Task::new(async move { gpu.submitted_async().await }));
-        // Its end is asked for now, not at the next frame.
-        self.is_drawing(ui);
-    }
-}
 
 /// What is shown beside what the address says, without anything of a device.
 struct Kept {
@@ -203,17 +177,6 @@ impl App {
     }
 }
 
-fn element(id: &str) -> Option<web_sys::Element> {
-    web_sys::window()?.document()?.get_element_by_id(id)
-}
-
-/// Shows a sentence over the page, or nothing.
-fn say(text: &str) {
-    if let Some(element) = element("say") {
-        element.set_text_content(Some(text));
-    }
-}
-
 /// One font for words and for numbers, and egui's own signs; what they lack the browser draws.
 fn fonts() -> FontDefinitions {
     let mut fonts = FontDefinitions::empty();
@@ -273,15 +236,15 @@ impl Page {
         self.runner.destroy();
         let Some((query, kept)) = kept else { return };
         if lost > MOST_LOST {
-            say(
+            show_message(
                 "The browser took the page's graphics device away again and again. Reload the page to try again.",
             );
             return;
         }
-        say("The graphics device was lost: opening another one.");
+        show_message("The graphics device was lost: opening another one.");
         match self.begin(query, Some(kept)).await {
-            Ok(()) => say(""),
-            Err(e) => say(&e),
+            Ok(()) => show_message(""),
+            Err(e) => show_message(&e),
         }
     }
 }
