@@ -18,7 +18,7 @@ use bevy::{
 pub(crate) struct Refusals(HashMap<u32, Option<String>>);
 
 impl Refusals {
-    pub fn of(
+    pub fn find(
         &mut self,
         model: &PeelnetModel,
         samples: u32,

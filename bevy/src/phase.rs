@@ -155,7 +155,7 @@ pub(crate) fn lend_items(
         let refusal = if has_bevys {
             Some("it has OrderIndependentTransparencySettings, Bevy's own technique, as well; remove one of the two".to_owned())
         } else {
-            refusals.of(&setup.model, samples, &device, &adapter)
+            refusals.find(&setup.model, samples, &device, &adapter)
         };
         if let Some(reason) = refusal {
             let text = format!(

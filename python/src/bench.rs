@@ -52,7 +52,7 @@ fn measured<'py>(
             };
             let partial = Partial::new(None, serde_json::Value::Null);
             let mut show = |event: Progress| match event {
-                Progress::Drawn { .. } => reporter.say(event),
+                Progress::Drawn { .. } => reporter.send(event),
                 Progress::LeftOut(_) => reporter.ask(event),
             };
             let bench = bench_watched(&gpu, scenes, &plan, partial, stop, &mut show)?;

@@ -241,7 +241,7 @@ fn in_memory(
     let mine = items::shard_items(scenes, options)?;
     let (mut batches, mut rows) = (Vec::new(), 0);
     let say = |done: usize, rows: u64| {
-        reporter.say(Progress {
+        reporter.send(Progress {
             items_done: done as u32,
             items: mine.len() as u32,
             rows,
@@ -340,7 +340,7 @@ pub fn extract_rows<'py>(
             if out.is_none() {
                 return in_memory(&gpu, &scenes, &options, stop, reporter).map(Done::Rows);
             }
-            let mut say = |p: &Progress| reporter.say(*p);
+            let mut say = |p: &Progress| reporter.send(*p);
             let report = peel::extract(&gpu, &scenes, &options, stop, &mut say)?;
             Ok(Done::Folder(Box::new(report)))
         },

@@ -137,7 +137,7 @@ pub struct Scene {
 }
 
 impl Scene {
-    fn of(py: Python<'_>, origin: Origin, time: Option<f32>) -> PyResult<Self> {
+    fn load_from(py: Python<'_>, origin: Origin, time: Option<f32>) -> PyResult<Self> {
         let scene = py.detach(|| origin.load(time)).map_err(raised)?;
         for warning in &scene.warnings {
             warn(py, warning)?;
@@ -154,7 +154,7 @@ impl Scene {
     #[new]
     #[pyo3(signature = (path, *, time=None))]
     fn new(py: Python<'_>, path: PathBuf, time: Option<f32>) -> PyResult<Self> {
-        Self::of(py, Origin::Path(path), time)
+        Self::load_from(py, Origin::Path(path), time)
     }
 
     /// Reads a scene from bytes.
@@ -179,12 +179,12 @@ impl Scene {
             .map(|(path, data)| (folder.join(path), data))
             .collect();
         files.insert(name.clone(), data);
-        Self::of(py, Origin::Bytes(name, Arc::new(files)), time)
+        Self::load_from(py, Origin::Bytes(name, Arc::new(files)), time)
     }
 
     /// The same scene at a time of its timeline.
     pub fn at(&self, py: Python<'_>, time: f32) -> PyResult<Self> {
-        Self::of(py, self.origin.clone(), Some(time))
+        Self::load_from(py, self.origin.clone(), Some(time))
     }
 
     /// The scene's name; rows and results are identified by it.
@@ -249,7 +249,7 @@ impl FromFile for Scene {
     const IS: &str = "a scene is a Scene, a path, or the name of a shipped scene";
 
     fn from_file(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
-        Self::of(py, Origin::Path(path), None)
+        Self::load_from(py, Origin::Path(path), None)
     }
 }
 

@@ -21,7 +21,7 @@ pub struct Reporter<E>(SyncSender<Said<E>>);
 
 impl<E> Reporter<E> {
     /// Reports without waiting; left out where Python is slower than the work.
-    pub fn say(&self, event: E) {
+    pub fn send(&self, event: E) {
         // A full channel or a listener that has gone: the next report says more.
         let _ = self.0.try_send((event, None));
     }

@@ -33,7 +33,7 @@ fn pairs(gpu: &Gpu, objects: Vec<Object>, samples: u32) -> u64 {
     let renderer = Renderer::new(gpu, &scene).unwrap();
     let mut surfaces = renderer.surfaces([SIDE; 2], samples).unwrap();
     let frame = renderer.image(&mut surfaces, &scene.views[0]);
-    Pairs::of(&frame.unwrap().image).count()
+    Pairs::from_surfaces(&frame.unwrap().image).count()
 }
 
 /// Pairs inside a rectangle of pixels.

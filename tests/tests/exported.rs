@@ -30,7 +30,7 @@ fn committed_texts_are_what_is_exported_today() {
         let folder = models.join(recipe.to_string());
         for language in Language::ALL {
             let file = folder.join(format!("model.{}", language.extension()));
-            let options = of(language);
+            let options = options(language);
             if std::env::var_os("PEELNET_UPDATE").is_some() {
                 peelnet_export::export(&gpu(), &model, &file, &options).unwrap();
             }
@@ -130,7 +130,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {{
     assert_eq!(drawn, Recipe::ALL.len() - 1);
 }
 
-fn of(language: Language) -> Options {
+fn options(language: Language) -> Options {
     Options {
         language,
         ..Options::default()
@@ -199,7 +199,7 @@ fn glsl_texts_answer_what_the_network_answers() {
             rows.push(inputs.map(|i| random.between(i.min, i.max)).collect());
         }
         for language in [Language::Glsl, Language::GlslEs] {
-            let text = peelnet_export::text(&model, &of(language)).unwrap();
+            let text = peelnet_export::text(&model, &options(language)).unwrap();
             let found = evaluate(&gpu, &model, &text, &rows);
             let want: Vec<f32> = rows.iter().flat_map(|r| model.shader_output(r)).collect();
             assert_eq!(found.len(), want.len());

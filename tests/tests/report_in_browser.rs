@@ -19,7 +19,7 @@ fn write_report(folder: &Path) {
         rows,
         ..Bench::default()
     };
-    let results = Results::new(Machine::of(&gpu), "peelnet bench", bench);
+    let results = Results::new(Machine::describe(&gpu), "peelnet bench", bench);
     results.write(folder).unwrap();
 }
 

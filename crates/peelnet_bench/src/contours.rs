@@ -28,7 +28,7 @@ pub struct Pairs {
 
 impl Pairs {
     /// The pairs of an image of [`peelnet_render::Renderer::surfaces`].
-    pub fn of(surfaces: &Image) -> Self {
+    pub fn from_surfaces(surfaces: &Image) -> Self {
         let width = surfaces.width as usize;
         let pixels = &surfaces.pixels;
         let same = |a: usize, b: usize| pixels[a] == pixels[b] && pixels[a][3] > 0.0;
@@ -53,7 +53,7 @@ impl Pairs {
         let surfaces = stage.surfaces(size, samples);
         match surfaces.and_then(|mut surfaces| stage.image(&mut surfaces, camera)) {
             Err(e) if e.is_too_large() => Ok(None),
-            frame => Ok(Some(Self::of(&frame?.image))),
+            frame => Ok(Some(Self::from_surfaces(&frame?.image))),
         }
     }
 
@@ -93,7 +93,7 @@ mod tests {
     /// The pairs of a frame whose pixels hold these lists of surfaces, by number; 0 is none.
     fn pairs(width: u32, surfaces: &[u32]) -> Pairs {
         let pixels = surfaces.iter();
-        Pairs::of(&Image {
+        Pairs::from_surfaces(&Image {
             width,
             height: surfaces.len() as u32 / width,
             pixels: pixels.map(|&s| [s as f32, 0.0, 0.0, s as f32]).collect(),

@@ -3,7 +3,7 @@ use peelnet_render::gpu::Gpu;
 use sysinfo::{CpuRefreshKind, MemoryRefreshKind, RefreshKind, System};
 
 impl Machine {
-    pub fn of(gpu: &Gpu) -> Self {
+    pub fn describe(gpu: &Gpu) -> Self {
         let system = System::new_with_specifics(
             RefreshKind::nothing()
                 .with_cpu(CpuRefreshKind::nothing())

@@ -21,7 +21,7 @@ impl ImageFormat {
     ///
     /// # Errors
     /// [`RenderError::Image`] for any other ending.
-    pub fn of(path: &Path) -> Result<Self, RenderError> {
+    pub fn from_ending(path: &Path) -> Result<Self, RenderError> {
         let ending = path.extension().and_then(|e| e.to_str());
         match ending.unwrap_or_default().to_lowercase().as_str() {
             "png" => Ok(Self::Png),
@@ -138,7 +138,7 @@ impl Image {
     /// # Errors
     /// An unknown ending, or a file that cannot be written.
     pub fn save(&self, path: &Path) -> Result<(), RenderError> {
-        let bytes = self.encoded(ImageFormat::of(path)?)?;
+        let bytes = self.encoded(ImageFormat::from_ending(path)?)?;
         peelnet_core::files::write_whole(path, &bytes).map_err(|e| failed(path, &e))
     }
 }
@@ -175,10 +175,10 @@ mod tests {
         assert_eq!(back.get_pixel(0, 0).0, [0, 255, 0]);
         assert!(image.save(&at("a.gif")).is_err());
         for good in ["a.png", "b/c.EXR", "d.npy"] {
-            assert!(ImageFormat::of(Path::new(good)).is_ok(), "{good}");
+            assert!(ImageFormat::from_ending(Path::new(good)).is_ok(), "{good}");
         }
         for bad in ["a", "a.jpg", ".png"] {
-            assert!(ImageFormat::of(Path::new(bad)).is_err(), "{bad}");
+            assert!(ImageFormat::from_ending(Path::new(bad)).is_err(), "{bad}");
         }
         for (name, foreign) in [
             ("a.png", &b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR"[..]),
@@ -188,7 +188,9 @@ mod tests {
                 b"\x93NUMPY\x01\0v\0{'descr': '<f4', 'shape': (5,)}",
             ),
         ] {
-            let kind = ImageFormat::of(&at(name)).expect("an ending").kind();
+            let kind = ImageFormat::from_ending(&at(name))
+                .expect("an ending")
+                .kind();
             std::fs::write(at("foreign"), foreign).expect("writes");
             let found = [name, "foreign"].map(|n| kind.is_foreign(&at(n)).expect("reads"));
             assert_eq!(found, [false, true], "{name}");

@@ -68,7 +68,7 @@ impl Renderer {
         scene.draw_background(&mut recorder, &frame, None, true);
         sbuffer.count.encode(&mut recorder, scene, &frame);
         gpu.queue.submit([encoder.finish()]);
-        let found = CountPass::found(&gpu.read_async(&sbuffer.count.total).await?)?;
+        let found = CountPass::parse(&gpu.read_async(&sbuffer.count.total).await?)?;
         let planned = sbuffer.plan(scene, &frame, found, None)?;
         let Some((tiles, _)) = planned.filter(|_| found.total > 0) else {
             return Ok(Vec::new());

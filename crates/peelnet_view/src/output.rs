@@ -12,11 +12,11 @@ pub(crate) struct Output {
 
 impl Output {
     pub fn last(&self) -> Option<&Result<String, String>> {
-        self.job.of(&())
+        self.job.get(&())
     }
 
     /// Says what was done at once.
-    pub fn say(&mut self, result: Fallible<String>) {
+    pub fn show(&mut self, result: Fallible<String>) {
         self.job.last = Some(((), result.map_err(|e| one_line(&*e))));
     }
 }

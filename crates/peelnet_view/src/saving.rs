@@ -65,7 +65,7 @@ impl App {
                 left_out => format!("{said}, without {left_out}"),
             })
         });
-        self.output.say(saved);
+        self.output.show(saved);
     }
 
     pub(crate) fn copy_shader(&mut self, ui: &egui::Context, language: Language) {
@@ -81,12 +81,12 @@ impl App {
             ui.copy_text(text);
             format!("{lines} lines of {name} are in the clipboard")
         });
-        self.output.say(copied.map_err(Into::into));
+        self.output.show(copied.map_err(Into::into));
     }
 }
 
 fn save(image: &Image, path: &Path) -> Fallible<String> {
-    let format = ImageFormat::of(path)?;
+    let format = ImageFormat::from_ending(path)?;
     if cfg!(target_arch = "wasm32") {
         return keep(path, &image.encoded(format)?);
     }

@@ -101,14 +101,14 @@ impl<K: PartialEq + 'static, T: 'static> Job<K, T> {
     }
 
     /// The last result, where it is of this.
-    pub fn of(&self, key: &K) -> Option<&Result<T, String>> {
+    pub fn get(&self, key: &K) -> Option<&Result<T, String>> {
         let (of, result) = self.last.as_ref()?;
         (of == key).then_some(result)
     }
 
     /// Whether work on this is to begin: nothing goes on, and its result is not known.
     pub fn wants(&self, key: &K) -> bool {
-        self.task.is_none() && self.of(key).is_none()
+        self.task.is_none() && self.get(key).is_none()
     }
 
     /// Begins, in place of what goes on.

@@ -282,8 +282,8 @@ fn errors_are_measured_while_the_view_rests() {
         w.state_mut().first.set_spec(method.parse().unwrap());
         steps(&mut w);
         let key = w.state().key().unwrap();
-        until(&mut w, "measured", |app| app.judge.of(&key).is_some());
-        let numbers = w.state().judge.of(&key).unwrap().as_ref().unwrap();
+        until(&mut w, "measured", |app| app.judge.get(&key).is_some());
+        let numbers = w.state().judge.get(&key).unwrap().as_ref().unwrap();
         assert_eq!(numbers.differences.mse255 > 0.0, errs);
         assert_eq!(numbers.flip.is_some_and(|x| x > 0.0), errs);
         assert!(numbers.stats.fragments.is_some_and(|n| n > 0));
@@ -300,7 +300,7 @@ fn all_methods_are_measured_on_the_view() {
     app.front.measure(stage, stage.view(app.camera, [48, 32]));
     until(&mut w, "front", |app| !app.front.job.is_busy());
     let front = &w.state().front;
-    assert_eq!(front.job.of(&()), Some(&Ok(())));
+    assert_eq!(front.job.get(&()), Some(&Ok(())));
     let measured = front.measured.borrow();
     assert_eq!(measured.points.len(), measured.all);
     assert_eq!(measured.left_out, []);

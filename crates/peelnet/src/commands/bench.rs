@@ -73,7 +73,7 @@ pub(super) fn report<T: Measurement>(
     measured: T,
     text: impl FnOnce(&Results<T>) -> String,
 ) -> Result<(), Failure> {
-    let results = Results::new(Machine::of(gpu), command_line(), measured);
+    let results = Results::new(Machine::describe(gpu), command_line(), measured);
     results.write(out)?;
     context.console.result(|| text(&results), || json!(results))
 }
@@ -195,7 +195,7 @@ pub(super) fn measure(
     // What must be the same for an interrupted run to be resumed.
     let names: Vec<String> = plan.methods.iter().map(ToString::to_string).collect();
     let settings = json!({
-        "machine": Machine::of(&gpu),
+        "machine": Machine::describe(&gpu),
         "size": plan.size,
         "samples": plan.samples,
         "frames": plan.frames,
@@ -220,7 +220,11 @@ pub(super) fn measure(
     };
     measured.settings = Some(hash);
     context.warn_of_memory(&gpu);
-    Ok(Results::new(Machine::of(&gpu), command_line(), measured))
+    Ok(Results::new(
+        Machine::describe(&gpu),
+        command_line(),
+        measured,
+    ))
 }
 
 /// The results in a folder of a run with these settings that came to its end; nothing where no run ended there.

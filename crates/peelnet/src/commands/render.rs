@@ -8,7 +8,7 @@ use peelnet_render::{
 use serde_json::json;
 
 pub(super) fn run(context: &Context<'_>, args: &RenderArgs) -> Result<(), Failure> {
-    let format = ImageFormat::of(&args.out).map_err(|e| match e {
+    let format = ImageFormat::from_ending(&args.out).map_err(|e| match e {
         RenderError::Image { message, .. } => {
             Failure::wrong(format!("--out {}: {message}", shown(&args.out)))
         }

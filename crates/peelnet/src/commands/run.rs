@@ -105,7 +105,7 @@ pub(super) fn run(context: &Context<'_>, args: &RunArgs) -> Result<(), Failure> 
     let images = args.out.join("images");
     let showcase = run.showcase(&learned, &images)?;
     let rows = run.compare(&learned, &images)?;
-    let mut results = Results::of_rows(Machine::of(&run.gpu), command_line(), rows);
+    let mut results = Results::of_rows(Machine::describe(&run.gpu), command_line(), rows);
     results.measured.settings = run.settings(share, &outcome.model);
     results.measured.trained_on = trained_on(&scenes, [&outcome.model]);
     results.measured.stages = run.stages;

@@ -62,14 +62,14 @@ pub(super) fn run(context: &Context<'_>, args: &StressArgs) -> Result<(), Failur
         rows.extend(stress(&gpu, case, &subjects, strict, images, &mut notify)?);
     }
     drop(bar);
-    let results = Results::new(Machine::of(&gpu), command_line(), Stressed { rows });
+    let results = Results::new(Machine::describe(&gpu), command_line(), Stressed { rows });
     if let Some(out) = &args.out {
         results.write(out)?;
     }
     context
         .console
         .result(|| text(&results), || json!(results))?;
-    let what = match results.measured.of(Outcome::Fail).count() {
+    let what = match results.measured.rows_with(Outcome::Fail).count() {
         0 => return Ok(()),
         1 => "1 property does".to_owned(),
         n => format!("{n} properties do"),

@@ -23,7 +23,7 @@ pub(super) fn run(context: &Context<'_>, args: &ViewArgs) -> Result<(), Failure>
         .map_err(|e| Failure::wrong(format!("--camera: {e}")))?;
     let mut outputs = context.outputs(args.model.iter().chain([&args.scene]));
     if let Some(path) = &args.screenshot {
-        if !matches!(ImageFormat::of(path), Ok(ImageFormat::Png)) {
+        if !matches!(ImageFormat::from_ending(path), Ok(ImageFormat::Png)) {
             return Err(Failure::wrong(format!(
                 "--screenshot {}: is a PNG file; let its name end in .png",
                 shown(path)

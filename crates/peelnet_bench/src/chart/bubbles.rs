@@ -115,10 +115,10 @@ fn place(bubble: &Bubble, x: i32, y: i32, taken: &mut Vec<Area>) -> Option<Area>
             && a.0[2] < f64::from(SIZE.0) - 4.0
             && !taken.iter().any(|other| a.overlaps(other))
     };
-    let beside = Area::of(&bubble.name, sides[0], y);
+    let beside = Area::new(&bubble.name, sides[0], y);
     let area = shifts
         .iter()
-        .flat_map(|&shift| sides.map(|left| Area::of(&bubble.name, left, y + shift)))
+        .flat_map(|&shift| sides.map(|left| Area::new(&bubble.name, left, y + shift)))
         .find(free)
         .or(bubble.on_front.then_some(beside))?;
     taken.push(area);

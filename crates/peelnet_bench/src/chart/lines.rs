@@ -104,9 +104,9 @@ where
 
 /// The nearest place for a name at or below the end of its line.
 fn free(name: &str, x: i32, y: i32, taken: &mut Vec<Area>) -> Area {
-    let mut area = Area::of(name, f64::from(x) + 6.0, f64::from(y));
+    let mut area = Area::new(name, f64::from(x) + 6.0, f64::from(y));
     while let Some(other) = taken.iter().find(|other| area.overlaps(other)) {
-        area = Area::of(name, area.0[0], other.0[3] + NAME_HEIGHT / 2.0);
+        area = Area::new(name, area.0[0], other.0[3] + NAME_HEIGHT / 2.0);
     }
     taken.push(area);
     area

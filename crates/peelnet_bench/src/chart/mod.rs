@@ -92,7 +92,7 @@ struct Area([f64; 4]);
 
 impl Area {
     /// A name of 11 pixels whose left end is at the middle of a point.
-    fn of(name: &str, left: f64, middle: f64) -> Self {
+    fn new(name: &str, left: f64, middle: f64) -> Self {
         let half = NAME_HEIGHT / 2.0;
         Self([left, middle - half, left + width(name), middle + half])
     }

@@ -123,7 +123,7 @@ pub(super) struct Quantiles {
 }
 
 impl Quantiles {
-    pub fn of(view: &View) -> Self {
+    pub fn from_view(view: &View) -> Self {
         let mut bins = vec![0.0; BINS];
         for f in view.stacks.iter().flat_map(|stack| &stack.fragments) {
             let t = 0.5 + 0.5 * view.warp.apply(f.depth.into());
@@ -210,7 +210,7 @@ mod tests {
     fn quantiles_follow_absorbance() {
         let warp = DepthWarp::new(1.0, 4.0);
         let view = View::new("s", warp, 1, [(0, one(2.0))]);
-        let quantiles = Quantiles::of(&view);
+        let quantiles = Quantiles::from_view(&view);
         // ζ of 2 is 0, at the beginning of bin 128.
         for (zeta, expected) in [
             (-1.0, -1.0),

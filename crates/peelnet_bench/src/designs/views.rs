@@ -241,7 +241,7 @@ pub fn peel(
             check_stop(stop)?;
             let mut view = peel_one(&mut peeled, &stage, size, camera)?;
             view.boxes = of_boxes(&view, scene, camera, size);
-            view.quantiles = Some(Quantiles::of(&view));
+            view.quantiles = Some(Quantiles::from_view(&view));
             Ok(view)
         };
         for camera in scene.views.iter().take(most.unwrap_or(usize::MAX)) {

@@ -111,7 +111,7 @@ impl Take<'_, '_> {
         let mut exact = Exact::default();
         let surfaces = self.stage.surfaces(self.plan.size, self.plan.samples)?;
         self.draw(surfaces, &mut |_, image| {
-            exact.pairs.push(Pairs::of(&image));
+            exact.pairs.push(Pairs::from_surfaces(&image));
             Ok(())
         })?;
         let mut strip = Strip::new(self.plan.size, self.moments.len());

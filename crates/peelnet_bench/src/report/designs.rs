@@ -19,12 +19,12 @@ impl Results<Designs> {
         let references = measured.references.iter();
         let references = references.map(|r| Line(&r.method, None, &r.score));
         let lines: Vec<Line<'_>> = rows.chain(references).collect();
-        Table::of(
+        Table::from_rows(
             &lines,
             &[
                 ("design", &|line| line.0.to_owned()),
                 ("ends", &|l| l.row(|r| joined(r, |s| s.end.to_string()))),
-                ("kept", &|l| l.row(|r| joined(r, kept))),
+                ("kept", &|l| l.row(|r| joined(r, slab_text))),
                 ("records", &|l| l.row(|r| r.records.clone())),
                 ("range", &|l| l.row(|r| r.range.clone())),
                 ("sums", &|l| l.row(sums)),
@@ -86,7 +86,7 @@ fn joined(row: &Row, text: impl Fn(&Kept) -> String) -> String {
     row.slabs.iter().map(text).collect::<Vec<_>>().join(" ")
 }
 
-fn kept(slab: &Kept) -> String {
+fn slab_text(slab: &Kept) -> String {
     let letters = [(slab.mean, 'M'), (slab.nearest, 'N'), (slab.farthest, 'F')];
     let kept: String = letters.iter().filter(|l| l.0).map(|l| l.1).collect();
     if kept.is_empty() {
@@ -146,7 +146,7 @@ mod tests {
             trained_apart: true,
             ..Row::default()
         };
-        assert_eq!(joined(&row, kept), "MNF –");
+        assert_eq!(joined(&row, slab_text), "MNF –");
         assert_eq!(sums(&row), "one, trained apart");
         assert_eq!([0.01, 0.0, 123.4].map(significant), ["0.0100", "0", "123"]);
     }

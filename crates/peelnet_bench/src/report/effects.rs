@@ -33,7 +33,7 @@ impl Results<Effects> {
             (with, without) if with == without => format!("{with:.0}"),
             (with, without) => format!("{with:.0}, without {without:.0}"),
         };
-        let costs = Table::of(
+        let costs = Table::from_rows(
             &self.measured.costs,
             &[
                 ("scene", &|c| c.scene.clone()),
@@ -45,7 +45,7 @@ impl Results<Effects> {
             ],
         );
         let alone = |ms: f64, p: &Parts| two(ms / p.ms_both);
-        let parts = Table::of(
+        let parts = Table::from_rows(
             &self.measured.parts,
             &[
                 ("scene", &|p| p.scene.clone()),
@@ -56,7 +56,7 @@ impl Results<Effects> {
                 }),
             ],
         );
-        let layers = Table::of(
+        let layers = Table::from_rows(
             &self.measured.layers,
             &[
                 ("scene", &|l| l.scene.clone()),

@@ -9,7 +9,7 @@ pub struct ReportError {
 }
 
 impl ReportError {
-    pub(crate) fn of<E>(path: &Path, what: &'static str) -> impl FnOnce(E) -> Self
+    pub(crate) fn at<E>(path: &Path, what: &'static str) -> impl FnOnce(E) -> Self
     where
         E: std::error::Error + Send + Sync + 'static,
     {

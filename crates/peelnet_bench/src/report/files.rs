@@ -60,7 +60,7 @@ fn contains(head: &[u8], texts: &[&str]) -> bool {
 /// If the folder or the file cannot be written; then nothing is left behind.
 pub fn write_file(path: &Path, bytes: impl AsRef<[u8]>) -> Result<(), ReportError> {
     let written = peelnet_core::files::write_whole(path, bytes.as_ref());
-    written.map_err(ReportError::of(path, "cannot write"))
+    written.map_err(ReportError::at(path, "cannot write"))
 }
 
 /// Rows of flat fields as CSV with a header.

@@ -61,7 +61,7 @@ impl Results<Along> {
             let own = rows().filter(|r| r.method == m);
             own.filter_map(|r| r.change_max).reduce(f64::max)
         };
-        Table::of(
+        Table::from_rows(
             &methods,
             &[
                 ("method", &|m| (*m).to_owned()),

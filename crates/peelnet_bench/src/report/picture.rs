@@ -10,7 +10,7 @@ pub(crate) fn read(path: &Path) -> Result<Option<DynamicImage>, ReportError> {
         return Ok(None);
     }
     let picture = image::open(path);
-    let failed = ReportError::of(path, "cannot read the picture");
+    let failed = ReportError::at(path, "cannot read the picture");
     picture.map(Some).map_err(failed)
 }
 
@@ -29,7 +29,7 @@ pub(crate) fn data_uri(
     };
     let mut png = Cursor::new(Vec::new());
     let written = picture.to_rgb8().write_to(&mut png, ImageFormat::Png);
-    written.map_err(ReportError::of(path, "cannot shrink the picture"))?;
+    written.map_err(ReportError::at(path, "cannot shrink the picture"))?;
     Ok(format!(
         "data:image/png;base64,{}",
         STANDARD.encode(png.get_ref())

@@ -84,8 +84,8 @@ impl<T: DeserializeOwned> Results<T> {
         let file = path.join("results.json");
         let path = if path.is_dir() { &*file } else { path };
         let bytes = peelnet_core::files::read(path, MAX_BYTES);
-        let bytes = bytes.map_err(ReportError::of(path, "cannot read"))?;
+        let bytes = bytes.map_err(ReportError::at(path, "cannot read"))?;
         let read = serde_json::from_slice(&bytes);
-        read.map_err(ReportError::of(path, "not a result of this kind"))
+        read.map_err(ReportError::at(path, "not a result of this kind"))
     }
 }

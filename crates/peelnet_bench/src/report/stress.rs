@@ -29,7 +29,7 @@ impl Results<Stressed> {
         let columns = ids.iter().map(|id| (*id).to_owned());
         Table::matrix("method", columns, &methods, |method, k| {
             let count = |result| {
-                let of = self.measured.of(result);
+                let of = self.measured.rows_with(result);
                 of.filter(|r| r.method == method && r.case == ids[k])
                     .count()
             };
@@ -43,8 +43,8 @@ impl Results<Stressed> {
     }
 
     pub fn failures(&self) -> Table {
-        Table::of(
-            self.measured.of(Outcome::Fail),
+        Table::from_rows(
+            self.measured.rows_with(Outcome::Fail),
             &[
                 ("method", &|r| r.method.clone()),
                 ("case", &|r| r.case.clone()),
@@ -65,7 +65,7 @@ impl Results<Stressed> {
     /// The declared flaws, those of one reason together: property, methods, cases, worst value as a multiple of its limit.
     pub fn flaws(&self) -> Table {
         let mut groups: BTreeMap<(Property, &str), Vec<&Row>> = BTreeMap::new();
-        for row in self.measured.of(Outcome::Declared) {
+        for row in self.measured.rows_with(Outcome::Declared) {
             let reason = row.reason.as_deref().unwrap_or_default();
             groups.entry((row.property, reason)).or_default().push(row);
         }

@@ -23,7 +23,7 @@ impl Table {
         }
     }
 
-    pub(crate) fn of<'r, R: 'r>(
+    pub(crate) fn from_rows<'r, R: 'r>(
         rows: impl IntoIterator<Item = &'r R>,
         columns: &[Column<'_, R>],
     ) -> Self {

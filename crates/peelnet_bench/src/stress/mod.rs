@@ -67,12 +67,12 @@ impl Case {
 }
 
 impl Stressed {
-    pub fn of(&self, result: Outcome) -> impl Iterator<Item = &Row> {
+    pub fn rows_with(&self, result: Outcome) -> impl Iterator<Item = &Row> {
         self.rows.iter().filter(move |r| r.result == result)
     }
 
     pub fn summary(&self) -> String {
-        let count = |outcome| self.of(outcome).count() as u64;
+        let count = |outcome| self.rows_with(outcome).count() as u64;
         let pass = match count(Outcome::Pass) {
             1 => "1 property holds".to_owned(),
             n => format!("{n} properties hold"),

@@ -99,7 +99,7 @@ impl CountPass {
     }
 
     /// What was found, from the words of [`Self::total`].
-    pub fn found(words: &[u32]) -> Result<FragmentCount, RenderError> {
+    pub fn parse(words: &[u32]) -> Result<FragmentCount, RenderError> {
         let word = |i: usize| u64::from(words.get(i).copied().unwrap_or(0));
         let total = word(2) << 32 | word(0);
         if total > u64::from(u32::MAX) {
@@ -146,7 +146,7 @@ impl CountPass {
     ) -> Result<FragmentCount, RenderError> {
         self.encode(recorder, scene, frame);
         recorder.submit();
-        Self::found(&scene.gpu.read(&self.total, 0..self.total.size())?)
+        Self::parse(&scene.gpu.read(&self.total, 0..self.total.size())?)
     }
 
     /// The attachment of passes that write storage only.

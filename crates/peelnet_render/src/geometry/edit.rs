@@ -25,9 +25,9 @@ impl SceneBuffers {
         world_from_object: glam::Mat4,
     ) -> Result<(), RenderError> {
         let moved = self.object(object)?;
-        let was_mirrored = Placement::of(moved).mirrored;
+        let was_mirrored = Placement::from_object(moved).mirrored;
         moved.world_from_object = world_from_object;
-        let turned = Placement::of(moved).mirrored != was_mirrored;
+        let turned = Placement::from_object(moved).mirrored != was_mirrored;
         for number in 0..self.parts.len() {
             let part = &mut self.parts[number];
             if part.place.0 != object || part.run.vertices.is_empty() {
@@ -35,7 +35,7 @@ impl SceneBuffers {
             }
             let object = &self.scene.objects[object];
             let triangles = object.mesh.parts[part.place.1].triangles.clone();
-            let placement = Placement::of(object);
+            let placement = Placement::from_object(object);
             let vertices: Vec<Vertex> = placement.vertices(triangles, number as u32).collect();
             let first = part.run.vertices.start as usize;
             self.gpu.write_at(&self.vertices, first, &vertices);
@@ -54,7 +54,7 @@ impl SceneBuffers {
         let first = part.run.vertices.start as usize;
         let object = &self.scene.objects[part.place.0];
         let triangles = &object.mesh.parts[part.place.1].triangles;
-        let placement = Placement::of(object);
+        let placement = Placement::from_object(object);
         let attributes = placement.attributes(triangles, part.run.variant);
         if shares_anew {
             let numbers = placement.shared(triangles, &attributes, first);
@@ -86,7 +86,7 @@ impl SceneBuffers {
     ) -> Result<(), RenderError> {
         let place = (object, part);
         let found = self.object(object)?;
-        let data = MaterialData::of(&material, found.layer.unwrap_or(0));
+        let data = MaterialData::from_material(&material, found.layer.unwrap_or(0));
         let count = found.materials.len();
         let slot = found.materials.get_mut(part);
         *slot.ok_or_else(|| missing("part", part, count))? = material;
@@ -155,7 +155,12 @@ impl SceneBuffers {
         check_lights(&self.scene.lights)?;
         let drawn = self.parts.iter().filter(|p| !p.run.vertices.is_empty());
         let is_lit = drawn.into_iter().any(|p| p.run.variant.is_lit());
-        let lights: Vec<_> = self.scene.lights.iter().map(LightData::of).collect();
+        let lights: Vec<_> = self
+            .scene
+            .lights
+            .iter()
+            .map(LightData::from_light)
+            .collect();
         let bytes: &[u8] = bytemuck::cast_slice(&lights);
         match &self.lights {
             Some(buffer) if buffer.size() >= bytes.len() as u64 => {

@@ -31,7 +31,7 @@ pub(crate) struct OfVariant {
 }
 
 impl GeometryPipelines {
-    pub(crate) fn of(&self, variant: Variant) -> Option<&OfVariant> {
+    pub(crate) fn find(&self, variant: Variant) -> Option<&OfVariant> {
         self.variants.iter().find(|p| p.variant == variant)
     }
 }

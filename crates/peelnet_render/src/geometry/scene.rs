@@ -103,11 +103,14 @@ impl SceneBuffers {
         let mut materials = Vec::new();
         let mut parts = Vec::new();
         for (number, object) in scene.objects.iter().enumerate() {
-            let placement = Placement::of(object);
+            let placement = Placement::from_object(object);
             let all = object.mesh.parts.iter().zip(&object.materials);
             for (part_number, (part, material)) in all.enumerate() {
                 let index = materials.len() as u32;
-                materials.push(MaterialData::of(material, object.layer.unwrap_or(0)));
+                materials.push(MaterialData::from_material(
+                    material,
+                    object.layer.unwrap_or(0),
+                ));
                 let variant = Variant::of(material, object, setting);
                 let begin = vertices.len();
                 vertices.extend(placement.vertices(part.triangles.clone(), index));
@@ -378,7 +381,7 @@ impl SceneBuffers {
         }
         for run in runs {
             // There is one for every run's variant.
-            let Some(found) = pipelines.of(run.variant) else {
+            let Some(found) = pipelines.find(run.variant) else {
                 continue;
             };
             pass.set_pipeline(&found.pipeline);

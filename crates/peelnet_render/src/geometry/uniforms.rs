@@ -45,7 +45,7 @@ pub(crate) struct MaterialData {
 }
 
 impl MaterialData {
-    pub fn of(m: &Material, layer: u32) -> Self {
+    pub fn from_material(m: &Material, layer: u32) -> Self {
         let [r, g, b] = m.color;
         let [specular_or_metallic, shininess_or_roughness] = match m.lighting {
             Lighting::Pbr => [m.metallic, m.roughness],
@@ -78,7 +78,7 @@ pub(crate) struct LightData {
 }
 
 impl LightData {
-    pub fn of(light: &Light) -> Self {
+    pub fn from_light(light: &Light) -> Self {
         let (position, is_point) = match light.source {
             Source::Point(place) => (place, 1.0),
             Source::Toward(direction) => (direction, 0.0),

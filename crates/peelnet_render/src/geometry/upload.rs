@@ -57,7 +57,7 @@ pub(crate) struct Placement<'a> {
 }
 
 impl<'a> Placement<'a> {
-    pub fn of(object: &'a Object) -> Self {
+    pub fn from_object(object: &'a Object) -> Self {
         let linear = glam::Mat3::from_mat4(object.world_from_object);
         Self {
             object,
@@ -198,7 +198,7 @@ mod tests {
         let points = points.map(|[x, y]| glam::Vec3::new(x, y, 0.0));
         let mut object = object(points.to_vec(), vec![[0, 1, 2], [2, 1, 3]]);
         let shared = |object: &Object, attributes: &[Vec<f32>; 4]| {
-            Placement::of(object).shared(&(0..2), attributes, 30)
+            Placement::from_object(object).shared(&(0..2), attributes, 30)
         };
         let mut attributes: [Vec<f32>; 4] = Default::default();
         assert_eq!(shared(&object, &attributes), [30, 31, 32, 32, 31, 35]);
@@ -229,7 +229,7 @@ mod tests {
             ]
         };
         attributes[0] = (0..180).flat_map(uv).collect();
-        let numbers = Placement::of(&object).shared(&(0..60), &attributes, 0);
+        let numbers = Placement::from_object(&object).shared(&(0..60), &attributes, 0);
         for (corner, &number) in numbers.iter().enumerate() {
             let number = number as usize;
             assert_eq!((number % 3, uv(number)), (corner % 3, uv(corner)));

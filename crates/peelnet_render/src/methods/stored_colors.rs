@@ -30,7 +30,7 @@ impl Colors {
     }
 
     /// A fragment as it comes back. What alpha rounds to 0 is lost, its light too.
-    pub fn kept(self, fragment: &Fragment) -> Fragment {
+    pub fn rounded(self, fragment: &Fragment) -> Fragment {
         // Light of next to no opacity has no colour to divide out.
         if self == Self::Full {
             return *fragment;
@@ -110,9 +110,9 @@ mod tests {
     #[test]
     fn fragments_come_back_with_their_colour() {
         let f = Fragment::new(2.0, 0.5, [0.5, 0.25, 1.0]);
-        assert_eq!(Colors::Full.kept(&f), f);
-        assert_eq!(Colors::Half.kept(&f), f);
+        assert_eq!(Colors::Full.rounded(&f), f);
+        assert_eq!(Colors::Half.rounded(&f), f);
         let faint = Fragment::new(2.0, 0.001, [1.0; 3]);
-        assert_eq!(Colors::Bytes.kept(&faint).alpha, 0.0);
+        assert_eq!(Colors::Bytes.rounded(&faint).alpha, 0.0);
     }
 }

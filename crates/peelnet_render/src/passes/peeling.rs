@@ -52,7 +52,7 @@ pub(crate) struct Peeling<P> {
     counted: bool,
 }
 
-pub(crate) fn found(b: &Build<'_>) -> Result<wgpu::Buffer, RenderError> {
+pub(crate) fn found_buffer(b: &Build<'_>) -> Result<wgpu::Buffer, RenderError> {
     Ok(b.scene.gpu.storage("found", 8)?)
 }
 
@@ -148,7 +148,7 @@ impl<P: Peel + 'static> Compositor for Peeling<P> {
         let useful = log.iter().take_while(|&&found| found != 0).count() as u32;
         let is_whole = useful < self.recorded || self.recorded == self.most;
         if let Some(total) = words.get(2) {
-            let found = CountPass::found(total)?;
+            let found = CountPass::parse(total)?;
             stats.fragments = Some(found.total);
             stats.max_layers = Some(found.most);
             stats.lost = found.total.saturating_sub(words[0][1].into());

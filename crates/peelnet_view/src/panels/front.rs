@@ -28,7 +28,7 @@ pub(super) fn show(app: &mut App, ui: &mut Ui) {
     if app.front.view.is_some_and(|measured| measured != key.view) {
         ui.weak("Measured on an earlier view.");
     }
-    if let Some(Err(e)) = app.front.job.of(&()) {
+    if let Some(Err(e)) = app.front.job.get(&()) {
         error(ui, e);
     }
     let measured = std::rc::Rc::clone(&app.front.measured);

@@ -52,7 +52,7 @@ impl Results<Bench> {
             Some(format!("{x:.2} ({scene})"))
         };
         let dash = || "–".to_owned();
-        Table::of(
+        Table::from_rows(
             &rows.methods(),
             &[
                 ("method", &|m| (*m).to_owned()),

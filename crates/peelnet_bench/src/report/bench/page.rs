@@ -111,7 +111,7 @@ pub(crate) fn points_table(rows: &Rows<'_>, points: &[Point]) -> Markup {
     let mean = |p: &Point, value: fn(&Row) -> Option<f64>, digits| {
         number(rows.of_method(&p.method).mean(value), digits)
     };
-    let table = Table::of(
+    let table = Table::from_rows(
         points,
         &[
             ("method", &|p| p.method.clone()),
@@ -146,7 +146,7 @@ pub(crate) fn most_passes(rows: &Rows<'_>, method: &str) -> String {
 fn untimed(rows: &Rows<'_>) -> Markup {
     let all = front::untimed(rows);
     let ratio = |method, to| number(rows.error_ratio(method, to), 3);
-    let table = Table::of(
+    let table = Table::from_rows(
         &all,
         &[
             ("error only", &|m| m.0.to_owned()),

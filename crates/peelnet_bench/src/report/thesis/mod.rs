@@ -77,7 +77,7 @@ impl Results<ThesisRun> {
         let best = best.unwrap_or_default();
         let error = |s: &str, m| number(thesis::error(&rows, s, m, |r| r.mse255), 2);
         let ratio = |s: &str, to| number(thesis::ratio(&rows, s, [DEEP, to], |r| r.mse255), 2);
-        Table::of(
+        Table::from_rows(
             &rows.scenes(),
             &[
                 ("scene", &|s| scene_heading(s, trained_on)),

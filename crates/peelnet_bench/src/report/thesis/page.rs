@@ -88,7 +88,7 @@ fn showcase(rows: &[Row], images: &Path) -> Result<Markup, ReportError> {
 }
 
 fn stages(stages: &[Stage]) -> Table {
-    Table::of(
+    Table::from_rows(
         stages,
         &[
             ("stage", &|s| s.name.clone()),
@@ -106,7 +106,7 @@ fn costs(rows: &Rows<'_>) -> Table {
         times.get(times.len() / 2).copied()
     };
     let bytes = |method: &str| rows.of_method(method).bytes().unwrap_or_default();
-    Table::of(
+    Table::from_rows(
         &rows.methods(),
         &[
             ("method", &|m| (*m).to_owned()),

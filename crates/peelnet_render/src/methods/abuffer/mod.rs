@@ -199,7 +199,7 @@ impl Compositor for ABuffer {
         words: &[Vec<u32>],
         stats: &mut FrameStats,
     ) -> Result<Fit, RenderError> {
-        let found = CountPass::found(&words[0])?;
+        let found = CountPass::parse(&words[0])?;
         stats.fragments = Some(found.total);
         stats.max_layers = Some(found.most);
         let stored = if self.tiles.len() > 1 {

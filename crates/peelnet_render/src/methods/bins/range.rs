@@ -22,7 +22,7 @@ pub struct Range {
 
 impl Range {
     /// The range of a pixel whose fragments have these warped depths.
-    pub fn of(bounds: Bounds, zetas: impl Iterator<Item = f64> + Clone) -> Self {
+    pub fn from_depths(bounds: Bounds, zetas: impl Iterator<Item = f64> + Clone) -> Self {
         match bounds {
             Bounds::Frame => Self {
                 near: -1.0,
@@ -56,12 +56,12 @@ mod tests {
     fn ends_and_middle() {
         let zetas = [0.25, -0.25, 0.0];
         let of = |bounds| {
-            let range = Range::of(bounds, zetas.into_iter());
+            let range = Range::from_depths(bounds, zetas.into_iter());
             zetas.map(|z| range.place(z))
         };
         assert_eq!(of(Bounds::Pixel), [1.0, 0.0, 0.5]);
         assert_eq!(of(Bounds::Frame), [0.625, 0.375, 0.5]);
-        let one = Range::of(Bounds::Pixel, [0.3, 0.3].into_iter());
+        let one = Range::from_depths(Bounds::Pixel, [0.3, 0.3].into_iter());
         assert_eq!(one.place(0.3), 0.0);
     }
 }

@@ -24,7 +24,7 @@ pub fn transmittances(
     bounds: Bounds,
 ) -> Vec<f64> {
     let zetas = fragments.iter().map(|&(z, _)| warp.apply(z.into()));
-    let range = Range::of(bounds, zetas.clone());
+    let range = Range::from_depths(bounds, zetas.clone());
     let point = |(zeta, &(_, alpha)): (f64, &(f32, f32))| {
         let position = range.place(zeta) * bins as f64;
         let bin = (position as usize).min(bins - 1);

@@ -22,7 +22,7 @@ pub(super) const METHOD: Method = Method {
         "depth-peel",
         "exact: front to back, one layer a pass",
         |b| {
-            let found = peeling::found(b)?;
+            let found = peeling::found_buffer(b)?;
             let peel = Layers::new(b, &found)?;
             Peeling::boxed(b, found, peel)
         },

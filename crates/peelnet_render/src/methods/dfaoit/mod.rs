@@ -33,7 +33,7 @@ struct Dfaoit {
 }
 
 fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
-    let front = Layers::new(b, &peeling::found(b)?)?;
+    let front = Layers::new(b, &peeling::found_buffer(b)?)?;
     let mut p = Passes::new(b.conditions());
     b.learned_weight()?.wgsl.clone_into(&mut p.network);
     // Sums over the fragments behind the front, over all fragments, and the number of those behind.

@@ -62,7 +62,7 @@ fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
         Ok::<_, RenderError>((view, t.blend.start()))
     };
     let stacks = [texture(targets[0])?, texture(targets[1])?];
-    let found = peeling::found(b)?;
+    let found = peeling::found_buffer(b)?;
     let peel = DualPeel::new(b.scene, frame, &[], Some(&found))?;
     let states = targets.map(|t| Some(t.state()));
     let blend = |from: usize| {

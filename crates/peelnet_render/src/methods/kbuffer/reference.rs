@@ -19,6 +19,6 @@ pub fn composite(
         None => blended::composite(rest, background),
         Some(weight) => wboit::composite(rest, background, weight),
     };
-    let front: Vec<Fragment> = front.iter().map(|f| colors.kept(f)).collect();
+    let front: Vec<Fragment> = front.iter().map(|f| colors.rounded(f)).collect();
     over::composite(&front, behind)
 }

@@ -22,8 +22,8 @@ pub(super) const METHOD: Expectations = Expectations {
     ],
     reference: Some(|s, p| {
         let colors = stored_colors::colors(s);
-        let kept: Vec<_> = p.fragments.iter().map(|f| colors.kept(f)).collect();
-        Some(over::composite(&kept, p.background))
+        let stored: Vec<_> = p.fragments.iter().map(|f| colors.rounded(f)).collect();
+        Some(over::composite(&stored, p.background))
     }),
     ..Expectations::DEFAULT
 };

@@ -72,7 +72,7 @@ impl Averages {
 /// The transmittance in front of each of a pixel's fragments, given as (linear depth, α).
 pub fn transmittances(fragments: &[(f32, f32)], warp: &DepthWarp, settings: &Settings) -> Vec<f64> {
     let mut points = peelnet_core::methods::points(fragments, warp);
-    let range = Range::of(settings.bounds, points.iter().map(|p| p.1));
+    let range = Range::from_depths(settings.bounds, points.iter().map(|p| p.1));
     let mut averages = Averages::of_rank(settings.rank);
     for (b, place, _) in &mut points {
         *place = range.place(*place);
