@@ -87,7 +87,7 @@ fn descriptions_lead_to_the_colour_of_the_self_test() {
             continue;
         };
         let text = peelnet_export::wgsl(&model).unwrap();
-        let description = Description::of(recipe);
+        let description = Description::new(recipe);
         let (near, far) = (pixel.near, pixel.far);
         let zeta = format!("let zeta = peelnet_zeta(z, f32({near}), f32({far}));");
         let has_zeta = text.contains("fn peelnet_zeta(");

@@ -5,10 +5,9 @@
 
 use peelnet_core::{
     absorbance::{DepthWarp, absorbance},
-    features::{self, Rest},
     fragment::{Fragment, transmittances},
     methods::{
-        anchored,
+        anchored::{self, Rest},
         moments::{Moments, Settings},
         over,
         slabs::{self, Between, Design},
@@ -18,6 +17,7 @@ use peelnet_core::{
     tolerance,
     weights::Weight,
 };
+use peelnet_model::inputs::{NINE, REST, values};
 use peelnet_render::{
     KnownFailure, MethodSpec, Property,
     methods::{Pixel, wavelet},
@@ -89,13 +89,13 @@ fn warp(list: &[Fragment]) -> DepthWarp {
 
 /// A share that no network would predict: anything in 0 … 1.
 fn share(rest: &Rest) -> f64 {
-    let sum = features::all(rest).iter().sum::<f64>();
+    let sum = values(&REST, rest).iter().sum::<f64>();
     (sum * 12.9898).sin().abs()
 }
 
 /// The same between a slab's ends.
 fn guess(between: &Between) -> f64 {
-    let known = slabs::NINE.map(|input| (input.value)(between));
+    let known = values(&NINE, between);
     (known.iter().sum::<f64>() * 12.9898).sin().abs()
 }
 
@@ -246,21 +246,21 @@ proptest! {
             [0.0, 0.3, 1.0].iter().all(|share| (0.0..=1.0).contains(&weight(*share)))
         };
         for precision in [SumPrecision::Exact, SumPrecision::Half] {
-            for seen in anchored::seen(&points, &warp, precision) {
-                let features = features::all(&seen.rest);
-                prop_assert!(features.iter().all(|x| x.is_finite()), "{:?}", seen);
-                let shares = &features[3..];
-                prop_assert!(shares.iter().all(|x| (-1e-6..=1.0 + 1e-6).contains(x)), "{:?}", seen);
-                prop_assert!(is_weight(&|share| seen.weight(|_| share)), "{:?}", seen);
+            for f in anchored::known_fragments(&points, &warp, precision) {
+                let features = f.unknown.map(|rest| values(&REST, &rest));
+                prop_assert!(features.iter().flatten().all(|x| x.is_finite()), "{:?}", f);
+                let mut shares = features.iter().flat_map(|features| &features[3..]);
+                prop_assert!(shares.all(|x| (-1e-6..=1.0 + 1e-6).contains(x)), "{:?}", f);
+                prop_assert!(is_weight(&|share| f.weight(|_| share)), "{:?}", f);
             }
             // Between the known ends of slabs, whose bounds hold the share.
             for design in [Design::SMALL, Design::MEDIUM, Design::LARGE] {
-                for seen in slabs::seen(&points, &warp, design, precision) {
-                    let inputs = seen.between.map(|b| slabs::NINE.map(|input| (input.value)(&b)));
-                    prop_assert!(inputs.iter().flatten().all(|x| x.is_finite()), "{:?}", seen);
-                    let bounds = seen.between.map_or([0.0, 1.0], |b| b.bounds);
-                    prop_assert!(0.0 <= bounds[0] && bounds[0] <= bounds[1] && bounds[1] <= 1.0, "{:?}", seen);
-                    prop_assert!(is_weight(&|share| seen.weight(|_| share)), "{:?}", seen);
+                for f in slabs::known_fragments(&points, &warp, design, precision) {
+                    let inputs = f.unknown.map(|between| values(&NINE, &between));
+                    prop_assert!(inputs.iter().flatten().all(|x| x.is_finite()), "{:?}", f);
+                    let bounds = f.unknown.map_or([0.0, 1.0], |between| between.bounds);
+                    prop_assert!(0.0 <= bounds[0] && bounds[0] <= bounds[1] && bounds[1] <= 1.0, "{:?}", f);
+                    prop_assert!(is_weight(&|share| f.weight(|_| share)), "{:?}", f);
                 }
             }
         }
@@ -273,7 +273,7 @@ proptest! {
         let s = Statistics { moments: [x[0].abs(), x[1], x[2], x[3], x[4]], nearest: x[5].clamp(-1.0, 1.0), farthest: x[6].clamp(-1.0, 1.0) };
         let rest = s.without(&[(x[7].abs().min(16.0), zeta)]);
         let seen = Rest::new(&s, &rest, zeta);
-        prop_assert!(features::all(&seen).iter().all(|x| x.is_finite()), "{:?} {:?}", s, rest);
+        prop_assert!(values(&REST, &seen).iter().all(|x| x.is_finite()), "{:?} {:?}", s, rest);
     }
 
     /// Published weights of any depth and opacity.

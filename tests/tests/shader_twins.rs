@@ -1,6 +1,18 @@
 //! Functions that exist once in Rust and once in WGSL: evaluated on the GPU and compared.
 
-use peelnet_core::{guards, weights::Weight};
+use peelnet_core::{
+    absorbance::DepthWarp,
+    fragment::{Fragment, points},
+    guards,
+    methods::{anchored, deep, dfaoit, nmt, slabs},
+    random::Random,
+    statistics::SumPrecision,
+    weights::Weight,
+};
+use peelnet_model::{
+    Model, Recipe,
+    inputs::{DFAOIT, Feature, NINE, NMT, REST, THESIS, values},
+};
 use peelnet_render::gpu::Gpu;
 use peelnet_tests::{HALF, gpu};
 
@@ -121,4 +133,150 @@ fn stored_colors_come_back_within_half_a_step() {
     }
     // Light beyond 1 is cut off there, as `about` of the parameter says.
     assert_eq!(bytes[beyond], [1.0; 4]);
+}
+
+/// Roundings of the longest expression, the bounds of moments. Their system is conditioned by the bias, at least 2^-10.
+const FEATURE_ROUNDINGS: f64 = 4096.0;
+
+/// Compares features on what is known of random pixels. `parameters` are what the expressions in WGSL read, from the numbers `x0`, `x1` … that
+/// `numbers` gives.
+fn compare_features<C>(
+    recipe: Recipe,
+    features: &[&Feature<C>],
+    known: impl Iterator<Item = C>,
+    numbers: impl Fn(&C) -> Vec<f64>,
+    parameters: &str,
+) {
+    let known: Vec<C> = known.collect();
+    let inputs: Vec<f32> = known.iter().flat_map(numbers).map(|x| x as f32).collect();
+    let (count, width) = (features.len(), inputs.len() / known.len());
+    let mut body: String = (0..width)
+        .map(|k| format!("let x{k} = inputs[id.x * {width}u + {k}u];"))
+        .collect();
+    body += parameters;
+    for (k, feature) in features.iter().enumerate() {
+        let shared = feature.about.shared;
+        let shared = shared.map(|s| format!("let {} = {};", s.name, s.wgsl));
+        let (shared, wgsl) = (shared.unwrap_or_default(), feature.about.wgsl);
+        body += &format!("{{ {shared} outputs[id.x * {count}u + {k}u] = {wgsl}; }}");
+    }
+    let driver = format!(
+        "{}
+        @group(0) @binding(0) var<storage, read> inputs: array<f32>;
+        @group(0) @binding(1) var<storage, read_write> outputs: array<f32>;
+        @compute @workgroup_size(64)
+        fn main(@builtin(global_invocation_id) id: vec3u) {{
+            if id.x < arrayLength(&outputs) / {count}u {{ {body} }}
+        }}",
+        peelnet_export::wgsl(&Model::shipped(recipe).unwrap()).unwrap()
+    );
+    let threads = known.len() as u32;
+    let found: Vec<f32> = gpu()
+        .run(&driver, &inputs, known.len() * count, threads)
+        .unwrap();
+    for (known, found) in known.iter().zip(found.chunks_exact(count)) {
+        for ((feature, want), &found) in features.iter().zip(values(features, known)).zip(found) {
+            let error = (f64::from(found) - want).abs();
+            let limit = FEATURE_ROUNDINGS * f64::from(f32::EPSILON) * want.abs().max(1.0);
+            let name = feature.about.name;
+            assert!(error <= limit, "{recipe}, {name}: {found} for {want}");
+        }
+    }
+}
+
+#[test]
+fn features_are_the_same_in_rust_and_wgsl() {
+    let mut random = Random::new(35, &[]);
+    let mut layer = |_| {
+        let depth = random.log_between(1.0, 100.0);
+        Fragment::new(depth, random.between(0.02, 0.98), random.color())
+    };
+    let pixels: Vec<Vec<Fragment>> = (0..200)
+        .map(|k| (0..3 + k % 12).map(&mut layer).collect())
+        .collect();
+    let warp = DepthWarp::new(1.0, 100.0);
+    let lists: Vec<_> = pixels.iter().map(|pixel| points(pixel)).collect();
+    let exact = SumPrecision::Exact;
+    compare_features(
+        Recipe::THESIS,
+        &THESIS,
+        pixels
+            .iter()
+            .flat_map(|pixel| pixel.iter().map(|f| deep::Row::of(f, pixel))),
+        |row| {
+            vec![
+                row.linear_depth.into(),
+                row.alpha_sum.into(),
+                row.fragment_count.into(),
+            ]
+        },
+        "let linear_depth = x0; let statistics = vec2f(x1, x2);",
+    );
+    compare_features(
+        Recipe::NMT,
+        &NMT,
+        lists.iter().flat_map(|list| nmt::Seen::all(list, &warp)),
+        |seen| {
+            let ([near, far], [b0, b1, b2, b3, b4]) = (seen.extent, seen.moments);
+            vec![seen.zeta, -near, far, b0, seen.count as f64, b1, b2, b3, b4]
+        },
+        "let zeta = x0; let extent = vec2f(x1, x2); let totals = vec4f(x3, x4, 0.0, 0.0);
+        let moments = vec4f(x5, x6, x7, x8);",
+    );
+    compare_features(
+        Recipe::DFAOIT,
+        &DFAOIT,
+        pixels
+            .iter()
+            .map(|pixel| dfaoit::Layers::of(pixel.iter().map(|f| (f.alpha, f.color)))),
+        |l| {
+            let numbers = l.average.iter().chain([&l.average_alpha]);
+            numbers.chain(&l.sum).chain(&l.front).copied().collect()
+        },
+        "let count = 3.0; let behind = count * vec4f(x0, x1, x2, x3); let all = vec4f(x4, x5, x6, 0.0);
+        let front = vec4f(x7, x8, x9, 0.0);",
+    );
+    compare_features(
+        Recipe::ANCHORED_SMALL,
+        &REST,
+        lists
+            .iter()
+            .flat_map(|list| anchored::known_fragments(list, &warp, exact))
+            .filter_map(|f| f.unknown),
+        |rest| {
+            let [m1, m2, m3, m4] = rest.means;
+            vec![
+                rest.absorbance.sqrt(),
+                rest.place,
+                m1,
+                m2,
+                m3,
+                m4,
+                rest.bias,
+            ]
+        },
+        "let rest = PeelnetRest(x0, x1, vec4f(x2, x3, x4, x5), x6);",
+    );
+    compare_features(
+        Recipe::LARGE,
+        &NINE,
+        lists
+            .iter()
+            .flat_map(|list| slabs::known_fragments(list, &warp, slabs::Design::LARGE, exact))
+            .filter_map(|f| f.unknown),
+        |b| {
+            let [low, high] = b.bounds;
+            vec![
+                b.absorbance,
+                b.place,
+                b.mean,
+                low,
+                high,
+                b.extent,
+                b.own,
+                b.nearest,
+            ]
+        },
+        "let between = PeelnetBetween(x0, x1, x2, x3, x4, x5, x6, x7);",
+    );
 }

@@ -16,11 +16,10 @@ pub use ranges::{REACH, Source};
 pub use views::{Measured, Stacked, View, peel, score};
 
 use peelnet_core::{
-    features::Feature,
     methods::slabs::{self, Between, Design},
     statistics::SumPrecision,
 };
-use peelnet_model::{Model, Recipe};
+use peelnet_model::{Model, Recipe, inputs::Feature};
 
 pub use crate::{
     records::{DesignRow as Row, Designs, Reference, Score},
@@ -86,17 +85,13 @@ impl Entry {
 impl Row {
     pub fn new(entry: &Entry, model: &Model, network: Score, middle: Score) -> Self {
         let (design, recipe) = (&entry.design, entry.recipe);
-        let trained_apart = match recipe.inputs {
-            peelnet_model::Inputs::Slabs(trained, _) => trained.apart,
-            _ => design.apart,
-        };
         Self {
             design: entry.name.clone(),
             slabs: design.slabs.to_vec(),
             records: format!("{}x{}", design.records.bins, design.records.alphas),
             range: entry.source.name().to_owned(),
             apart: design.apart,
-            trained_apart,
+            trained_apart: recipe.inputs.known_apart(),
             // The last frame's range is kept while this frame's is found.
             bytes: design.bytes() + if entry.source == Source::Last { 2 } else { 0 },
             inputs: recipe

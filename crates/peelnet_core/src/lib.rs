@@ -14,7 +14,6 @@
 #![allow(missing_docs)]
 
 pub mod absorbance;
-pub mod features;
 pub mod files;
 pub mod fragment;
 pub mod guards;

@@ -45,7 +45,7 @@ pub(crate) fn header(model: &Model, options: &Options) -> String {
     lines.push(String::new());
     lines.extend(SelfTest::of(model).lines(function_name(model.meta.output)));
     lines.push(String::new());
-    lines.extend(Description::of(model.meta.recipe).lines(language));
+    lines.extend(Description::new(model.meta.recipe).lines(language));
     let mut text: String = lines
         .iter()
         // Names were bounded; whatever else a line holds, it must not end it.

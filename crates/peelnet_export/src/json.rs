@@ -65,7 +65,7 @@ pub fn json(model: &Model) -> Result<String, ExportError> {
         inputs: inputs.collect(),
         dataset: meta.dataset.as_ref(),
         held_out: &meta.held_out,
-        description: Description::of(meta.recipe),
+        description: Description::new(meta.recipe),
         multisampling: "by-sample",
         self_test: SelfTest::of(model),
     };

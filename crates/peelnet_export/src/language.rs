@@ -1,14 +1,12 @@
 //! Shading languages. The text is written once, in WGSL; naga translates it.
 
-use crate::{
-    ExportError,
-    description::{Kind, Value},
-};
+use crate::ExportError;
 use naga::{
     ShaderStage,
     back::{glsl, hlsl, msl},
     proc::BoundsCheckPolicies,
 };
+use peelnet_model::inputs::{Value, ValueKind};
 use std::fmt;
 
 /// A shading language that a model is exported to.
@@ -103,10 +101,10 @@ impl Language {
     pub(crate) fn declare(self, value: &Value) -> String {
         let [number, pair, ..] = self.spelling().types;
         let kind = match value.kind {
-            _ if self == Self::Wgsl => "let",
-            Kind::Number => number,
-            Kind::Pair => pair,
-            Kind::Statistics => "PeelnetStatistics",
+            _ if self == Self::Wgsl => return value.to_string(),
+            ValueKind::Number => number,
+            ValueKind::Pair => pair,
+            ValueKind::Statistics => "PeelnetStatistics",
         };
         format!("{kind} {} = {};", value.name, self.expression(value.call))
     }

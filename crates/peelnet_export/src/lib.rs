@@ -19,9 +19,10 @@ mod text;
 #[cfg(not(target_arch = "wasm32"))]
 mod verify;
 
-pub use description::{Blend, Description, Kind as ValueKind, Pass, Target, Value};
+pub use description::Description;
 pub use json::json;
 pub use language::Language;
+pub use peelnet_model::inputs::{Blend, Pass, Target, Value, ValueKind};
 pub use self_test::{Drawn, Pixel, Point, SelfTest};
 pub use text::{text, wgsl};
 #[cfg(not(target_arch = "wasm32"))]

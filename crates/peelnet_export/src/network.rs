@@ -8,7 +8,7 @@ use peelnet_core::{
     guards::{INPUT_LIMIT, RAW_LIMIT, ROOT_ABSORBANCE_LIMIT},
     mlp::{Activation, Layer},
 };
-use peelnet_model::{BOUNDS, Input, Inputs, Model, Output};
+use peelnet_model::{BOUNDS, Input, Model, Output};
 
 pub(crate) const fn function_name(output: Output) -> &'static str {
     match output {
@@ -19,24 +19,17 @@ pub(crate) const fn function_name(output: Output) -> &'static str {
 
 /// The function that the modules around the network call: it evaluates the inputs and passes them to the network.
 pub(crate) fn call(model: &Model) -> String {
-    let recipe = model.meta.recipe;
-    let (parameters, function) = match recipe.inputs {
-        Inputs::Row(_) => ("linear_depth: f32, statistics: vec2f", "peelnet_weight"),
-        Inputs::Moments(_) => (
-            "zeta: f32, extent: vec2f, totals: vec4f, moments: vec4f",
-            "peelnet_weight",
-        ),
-        Inputs::Rest(_) => ("rest: PeelnetRest", "peelnet_share"),
-        Inputs::Slabs(..) => ("between: PeelnetBetween", "peelnet_share"),
-        Inputs::Layers(_) => (
-            "front: vec4f, behind: vec4f, all: vec4f, count: f32",
-            "peelnet_color",
-        ),
+    let (inputs, output) = (model.meta.recipe.inputs, model.meta.output);
+    let parameters = inputs.surroundings().parameters;
+    let function = if output.is_share() {
+        "peelnet_share"
+    } else {
+        function_name(output)
     };
-    let about = recipe.inputs.about();
+    let about = inputs.features();
     let mut t = format!(
         "// The network's answer for what is known of a fragment.\nfn peelnet_network({parameters}) -> {} {{\n",
-        kind(recipe.output)
+        kind(output)
     );
     let mut written = Vec::new();
     for shared in about.iter().filter_map(|about| about.shared) {

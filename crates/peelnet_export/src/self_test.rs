@@ -1,17 +1,11 @@
 //! Inputs of the exported functions with their answers, by which a renderer checks what it pasted.
 
-use crate::{description::layout, literal::float};
+use crate::literal::float;
 use peelnet_core::{
-    absorbance::{DepthWarp, absorbance},
-    fragment::worked_example,
-    methods::{
-        anchored::{resolve, resolve_separate_ends},
-        slabs::{Design, Layout, Slabs},
-    },
-    random::Random,
-    statistics::SumPrecision,
+    absorbance::DepthWarp, fragment::worked_example, methods::anchored::composite_weighted,
+    random::Random, statistics::SumPrecision,
 };
-use peelnet_model::{Inputs, Model, Output};
+use peelnet_model::{Model, inputs::Observed};
 use serde::Serialize;
 
 const POINTS: usize = 3;
@@ -134,27 +128,21 @@ fn pixel(model: &Model) -> Option<Pixel> {
     let [near, far] = [fragments[0].depth, fragments[fragments.len() - 1].depth];
     let warp = DepthWarp::new(near.into(), far.into());
     let points = fragments.map(|f| (f.depth, f.alpha));
-    let weights = model.transmittances(&points, &warp, SumPrecision::Exact);
+    let observed = Observed {
+        fragments: &points,
+        warp,
+        precision: SumPrecision::Exact,
+    };
+    let weights = model.transmittances(&observed);
     if weights.is_empty() {
         return None;
     }
-    let separate = model.meta.output == Output::AnchoredShareSeparateEnds;
-    let mut sums = [[0.0f64; 4]; 2];
+    let inputs = model.meta.recipe.inputs;
     let last = fragments.len() - 1;
-    for (k, (f, w)) in fragments.iter().zip(&weights).enumerate() {
-        // The nearest and the farthest fragment are known.
-        let sum = &mut sums[usize::from(separate && (k == 0 || k == last))];
-        for (sum, c) in sum.iter_mut().zip(f.color.into_iter().chain([1.0])) {
-            *sum += f64::from(f.alpha) * f64::from(c) * w;
-        }
-    }
-    let transmittance: f64 = fragments.iter().map(|f| 1.0 - f64::from(f.alpha)).product();
-    let background = BACKGROUND.map(f64::from);
-    let color = if separate {
-        resolve_separate_ends(sums[0], sums[1], transmittance, background)
-    } else {
-        resolve(sums[0], transmittance, background)
-    };
+    // The nearest and the farthest fragment are known.
+    let known = weights.iter().enumerate();
+    let known = known.map(|(k, &weight)| (weight, k == 0 || k == last));
+    let color = composite_weighted(&fragments, BACKGROUND, inputs.known_apart(), known);
     let drawn = fragments.iter().zip(&weights).map(|(f, w)| Drawn {
         z: f.depth,
         alpha: f.alpha,
@@ -162,58 +150,12 @@ fn pixel(model: &Model) -> Option<Pixel> {
         zeta: warp.apply(f.depth.into()) as f32,
         weight: *w as f32,
     });
-    let targets = match model.meta.recipe.inputs {
-        Inputs::Slabs(design, _) => of_slabs(design, &points, &warp),
-        _ => Vec::new(),
-    };
     Some(Pixel {
         near,
         far,
         fragments: drawn.collect(),
-        targets,
+        targets: inputs.target_values(&observed),
         background: BACKGROUND,
-        color: color.map(|c| c as f32),
+        color,
     })
-}
-
-/// What the targets of slabs hold, by their names in the description.
-fn of_slabs(
-    design: Design,
-    points: &[(f32, f32)],
-    warp: &DepthWarp,
-) -> Vec<(&'static str, Vec<f32>)> {
-    let of = |&(z, alpha): &(f32, f32)| (absorbance(alpha), warp.apply(z.into()), true);
-    let points: Vec<_> = points.iter().map(of).collect();
-    let slabs = Slabs::of(&points, design, SumPrecision::Exact);
-    let [mut a, mut firsts, mut near, mut far] = [const { Vec::new() }; 4];
-    for slab in slabs.stored() {
-        for (values, value) in [&mut a, &mut firsts, &mut near, &mut far]
-            .into_iter()
-            .zip(slab)
-        {
-            values.push(value as f32);
-        }
-    }
-    let range = slabs.range().stored().map(|x| x as f32).to_vec();
-    let mut targets = vec![("range", range)];
-    match layout(&design) {
-        Layout::Small => {
-            a.push(firsts.remove(0));
-            near.push(far[0]);
-            targets.extend([("absorbances", a), ("nearest", near), ("firsts", firsts)]);
-        }
-        Layout::Medium => {
-            for (values, first) in [&mut a, &mut near, &mut far].into_iter().zip(firsts) {
-                values.push(first);
-            }
-            targets.extend([("absorbances", a), ("nearest", near), ("farthest", far)]);
-        }
-        Layout::Large => targets.extend([
-            ("absorbances", a),
-            ("nearest", near),
-            ("farthest", far),
-            ("firsts", firsts),
-        ]),
-    }
-    targets
 }

@@ -2,12 +2,11 @@
 
 use crate::{
     ExportError, Options, Precision,
-    description::layout,
     header::header,
     network::{call, weight_function},
 };
 use peelnet_core::mlp::Mlp;
-use peelnet_model::{Inputs, Model, Output, Recipe};
+use peelnet_model::{Model, Recipe};
 
 /// The directive that a text in 16 bits begins with, behind its header.
 const ENABLE_HALVES: &str = "enable f16;\n";
@@ -69,31 +68,8 @@ pub(crate) fn code(model: &Model, precision: Precision) -> Result<String, Export
 
 /// The shader modules that surround a network.
 fn modules(recipe: Recipe) -> Vec<&'static str> {
-    let mut modules = match recipe.inputs {
-        Inputs::Row(_) => vec!["learned::thesis", "learned::composite"],
-        Inputs::Moments(_) => vec![
-            "learned::zeta",
-            "learned::absorbance",
-            "learned::nmt",
-            "learned::resolve",
-            "learned::composite",
-        ],
-        Inputs::Layers(_) => vec!["learned::dfaoit"],
-        Inputs::Rest(_) => vec![
-            "learned::zeta",
-            "learned::absorbance",
-            "learned::levels",
-            "learned::anchored",
-            "learned::anchored_fragment",
-        ],
-        Inputs::Slabs(design, _) => peelnet_render::shaders::slab_modules(layout(&design).name()),
-    };
-    modules.extend(match recipe.output {
-        Output::AnchoredShareSeparateEnds => &["learned::resolve_separate_ends"][..],
-        Output::AnchoredShare => &["learned::resolve", "learned::composite"],
-        _ => &[],
-    });
-    for about in recipe.inputs.about() {
+    let mut modules = recipe.inputs.surroundings().modules.to_vec();
+    for about in recipe.inputs.features() {
         let module = about.shared.and_then(|shared| shared.module);
         modules.extend(module.filter(|module| !modules.contains(module)));
     }

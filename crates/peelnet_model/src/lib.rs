@@ -20,13 +20,15 @@
 
 mod error;
 mod file;
+pub mod inputs;
 mod metadata;
 mod model;
+mod output;
 mod recipe;
-mod weights;
 
 pub use error::{ModelError, Problem};
 pub use file::{KIND, MAX_BYTES};
-pub use metadata::{BOUNDS, DatasetRef, FORMAT_VERSION, Input, Losses, Metadata, Output};
+pub use metadata::{DatasetRef, FORMAT_VERSION, Input, Losses, Metadata};
 pub use model::Model;
-pub use recipe::{Budget, Declaration, Inputs, Network, PixelLoss, Recipe};
+pub use output::{BOUNDS, Output};
+pub use recipe::{Budget, Declaration, Network, PixelLoss, Recipe};

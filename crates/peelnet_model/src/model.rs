@@ -9,6 +9,7 @@ use sha2::{Digest, Sha256};
 
 use crate::error::{ModelError, Problem};
 use crate::file::{self, MAX_BYTES};
+use crate::inputs::{Feature, Observed, values};
 use crate::metadata::Metadata;
 use crate::recipe::Recipe;
 
@@ -160,5 +161,30 @@ impl Model {
             }
         }
         outputs
+    }
+
+    /// The weight of every fragment of a pixel, an estimate of the transmittance in front of it, in 64 bits. Empty for a network that predicts
+    /// none.
+    pub fn transmittances(&self, pixel: &Observed<'_>) -> Vec<f64> {
+        let inputs = self.meta.recipe.inputs;
+        let network = |raw: &[f64]| -> f64 {
+            if inputs.are_columns() {
+                let raw: Vec<f32> = raw.iter().map(|&x| x as f32).collect();
+                self.forward_raw(&raw)[0].into()
+            } else {
+                self.forward_raw(raw)[0]
+            }
+        };
+        inputs.transmittances(pixel, &network)
+    }
+
+    /// The network's outputs for what is known of a fragment or a pixel.
+    pub fn answers<C>(&self, features: &[&Feature<C>], known: &C) -> Vec<f64> {
+        self.forward_raw(&values(features, known))
+    }
+
+    /// The first of [`Model::answers`].
+    pub fn answer<C>(&self, features: &[&Feature<C>], known: &C) -> f64 {
+        self.answers(features, known)[0]
     }
 }

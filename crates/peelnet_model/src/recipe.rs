@@ -1,56 +1,18 @@
 //! Recipes: each network is one declaration of its inputs, output, shape, loss and training budget.
 //!
 //! What trains, exports, draws and documents networks reads these declarations. It distinguishes recipes by what their
-//! networks read ([`Inputs`]) and answer ([`Output`]), never by name. To add one, see `CONTRIBUTING.md`.
+//! networks read ([`NetworkInputs`]) and answer ([`Output`]), never by name. To add one, see `CONTRIBUTING.md`.
 
 use std::{fmt, ops::Deref, str::FromStr};
 
-use peelnet_core::{
-    features::{About, FEATURES, Feature, Rest},
-    methods::{
-        deep::{Row, THESIS_INPUTS},
-        dfaoit::{self, Layers},
-        nmt,
-        slabs::{self, Between, Design},
-    },
-    mlp::Activation,
-    statistics::SumPrecision,
-};
+use peelnet_core::{methods::slabs::Design, mlp::Activation, statistics::SumPrecision};
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
 
-use crate::metadata::Output;
-
-/// What a network reads, and what it is a function of.
-#[derive(Clone, Copy, Debug)]
-pub enum Inputs {
-    /// Columns of a dataset: every row is an example.
-    Row(&'static [&'static Feature<Row>]),
-    /// The moments of a pixel and a depth: every row is an example.
-    Moments(&'static [&'static Feature<nmt::Seen>]),
-    /// The rest of a pixel, seen from a fragment: whole pixels are examples. The first input must be the root of its absorbance.
-    Rest(&'static [&'static Feature<Rest>]),
-    /// What lies between the known ends of a fragment's slab, in a design of slabs: whole pixels are examples. The first input must be
-    /// the root of its absorbance, the fourth and fifth the bounds of the share in front.
-    Slabs(Design, &'static [&'static Feature<Between>]),
-    /// A pixel with more fragments than are composited exactly: every such pixel is an example.
-    Layers(&'static [&'static Feature<Layers>]),
-}
-
-impl Inputs {
-    /// Names, units and WGSL of the inputs, in order.
-    pub fn about(&self) -> Vec<&'static About> {
-        fn of<C>(features: &'static [&'static Feature<C>]) -> Vec<&'static About> {
-            features.iter().map(|feature| &feature.about).collect()
-        }
-        match self {
-            Self::Row(features) => of(features),
-            Self::Moments(features) => of(features),
-            Self::Rest(features) => of(features),
-            Self::Slabs(_, features) => of(features),
-            Self::Layers(features) => of(features),
-        }
-    }
-}
+use crate::inputs::{
+    AnchoredInputs, DFAOIT, DfaoitInputs, FIVE, NINE, NMT, NetworkInputs, NmtInputs, REST,
+    SlabInputs, THESIS, ThesisInputs,
+};
+use crate::output::Output;
 
 /// The shape of a network.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -133,7 +95,7 @@ pub struct Declaration {
     /// The name of the rendering method that draws with such a network.
     pub method: &'static str,
     /// What the network reads.
-    pub inputs: Inputs,
+    pub inputs: &'static dyn NetworkInputs,
     /// What the network answers.
     pub output: Output,
     /// How the method keeps its sums by default; networks train on what they will read.
@@ -183,7 +145,10 @@ const fn relu(hidden: &'static [usize], output_activation: Activation) -> Networ
 const SHARES: Declaration = Declaration {
     name: "",
     method: "",
-    inputs: Inputs::Rest(&FEATURES),
+    inputs: &AnchoredInputs {
+        features: &REST,
+        separate_ends: false,
+    },
     output: Output::BoundedShare,
     sums: SumPrecision::Half,
     network: relu(&[12], Activation::Sigmoid),
@@ -206,7 +171,7 @@ impl Recipe {
     pub const THESIS: Self = Self(&Declaration {
         name: "thesis",
         method: "deep-thesis",
-        inputs: Inputs::Row(&THESIS_INPUTS),
+        inputs: &ThesisInputs { features: &THESIS },
         output: Output::Transmittance,
         sums: SumPrecision::Exact,
         network: relu(&[10, 8], Activation::Identity),
@@ -227,7 +192,10 @@ impl Recipe {
     pub const SMALL: Self = Self(&Declaration {
         name: "small",
         method: "deep-small",
-        inputs: Inputs::Slabs(Design::SMALL, &slabs::FIVE),
+        inputs: &SlabInputs {
+            design: Design::SMALL,
+            features: &FIVE,
+        },
         network: relu(&[], Activation::Sigmoid),
         ..SHARES
     });
@@ -236,7 +204,10 @@ impl Recipe {
     pub const MEDIUM: Self = Self(&Declaration {
         name: "medium",
         method: "deep-medium",
-        inputs: Inputs::Slabs(Design::MEDIUM, &slabs::NINE),
+        inputs: &SlabInputs {
+            design: Design::MEDIUM,
+            features: &NINE,
+        },
         network: relu(&[13], Activation::Sigmoid),
         ..SHARES
     });
@@ -245,7 +216,10 @@ impl Recipe {
     pub const LARGE: Self = Self(&Declaration {
         name: "large",
         method: "deep-large",
-        inputs: Inputs::Slabs(Design::LARGE, &slabs::NINE),
+        inputs: &SlabInputs {
+            design: Design::LARGE,
+            features: &NINE,
+        },
         ..SHARES
     });
 
@@ -262,6 +236,10 @@ impl Recipe {
     pub const ANCHORED_MEDIUM: Self = Self(&Declaration {
         name: "anchored-medium",
         method: "deep-anchored-medium",
+        inputs: &AnchoredInputs {
+            features: &REST,
+            separate_ends: true,
+        },
         output: Output::AnchoredShareSeparateEnds,
         ..SHARES
     });
@@ -270,7 +248,7 @@ impl Recipe {
     pub const NMT: Self = Self(&Declaration {
         name: "nmt",
         method: "nmt",
-        inputs: Inputs::Moments(&nmt::INPUTS),
+        inputs: &NmtInputs { features: &NMT },
         ..COMPETITOR
     });
 
@@ -278,7 +256,7 @@ impl Recipe {
     pub const DFAOIT: Self = Self(&Declaration {
         name: "dfaoit",
         method: "dfaoit",
-        inputs: Inputs::Layers(&dfaoit::INPUTS),
+        inputs: &DfaoitInputs { features: &DFAOIT },
         output: Output::Color,
         budget: Budget {
             batch: 1024,
@@ -312,7 +290,11 @@ impl Recipe {
 
     /// The names of the inputs, in order.
     pub fn input_names(self) -> Vec<&'static str> {
-        self.inputs.about().iter().map(|about| about.name).collect()
+        self.inputs
+            .features()
+            .iter()
+            .map(|about| about.name)
+            .collect()
     }
 }
 
@@ -383,9 +365,10 @@ mod tests {
             for (i, name) in names.iter().enumerate() {
                 assert!(!names[..i].contains(name), "{recipe} reads {name} twice");
             }
-            let shares = matches!(recipe.inputs, Inputs::Rest(_) | Inputs::Slabs(..));
-            assert_eq!(recipe.output.is_share(), shares, "{recipe}");
+            let shares = recipe.output.is_share();
             assert_eq!(recipe.loss.is_some(), shares, "{recipe}");
+            let separate = recipe.output == Output::AnchoredShareSeparateEnds;
+            assert_eq!(recipe.inputs.known_apart(), separate, "{recipe}");
             assert!(!shares || names[0] == "root_absorbance", "{recipe}");
             let bounded = recipe.output == Output::BoundedShare;
             let bounds = ["share_low", "share_high"];

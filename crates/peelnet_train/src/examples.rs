@@ -1,54 +1,16 @@
 //! From views of a dataset to the examples of a recipe.
 
 use peelnet_core::absorbance::DepthWarp;
-use peelnet_core::features::Feature;
-use peelnet_core::fragment::Fragment;
-use peelnet_core::methods::anchored::{self, Place};
-use peelnet_core::methods::deep::Row;
-use peelnet_core::methods::dfaoit::{FRONT, Layers};
-use peelnet_core::methods::moments::{self, Settings};
-use peelnet_core::methods::nmt;
-use peelnet_core::methods::slabs;
+use peelnet_core::statistics::SumPrecision;
 use peelnet_dataset::{Column, Dataset, DatasetError, FragmentBatch, Part, Split, Subset};
-use peelnet_model::{Inputs, Output, Recipe};
+use peelnet_model::Recipe;
+use peelnet_model::inputs::{Examples, FragmentExample, Observed, PeeledPixel};
 
 use crate::error::TrainError;
 use crate::sampler::Sample;
 use crate::table::{ALPHA, COLOR, EXACT, KNOWN, LEFT, REST, SUM, TrainingData};
 
 const ROWS_AT_A_TIME: usize = 1 << 16;
-
-/// A pixel, nearest fragment first.
-pub(crate) struct Pixel<'a> {
-    /// Number of its view, x, y.
-    place: [u32; 3],
-    /// Linear depth and opacity.
-    pub(crate) points: &'a [(f32, f32)],
-    /// `T_i`.
-    pub(crate) transmittance: &'a [f32],
-    /// Un-premultiplied radiance.
-    colors: &'a [[f32; 3]],
-    /// The pixel's sum of opacities as each row has it.
-    alpha_sum: &'a [f32],
-    /// The number of its fragments, likewise.
-    fragment_count: &'a [u32],
-}
-
-impl Pixel<'_> {
-    /// `T_∞`.
-    fn behind(&self) -> f64 {
-        let last = self.points.last().zip(self.transmittance.last());
-        last.map_or(1.0, |((_, alpha), t)| {
-            f64::from(*t) * f64::from(1.0 - alpha)
-        })
-    }
-
-    /// `α_i T_i`: how much of each fragment is seen.
-    fn contributions(&self) -> impl Iterator<Item = f64> + '_ {
-        let points = self.points.iter().zip(self.transmittance);
-        points.map(|((_, alpha), t)| f64::from(*alpha) * f64::from(*t))
-    }
-}
 
 /// The rows of one view of a scene, and what its pixels are for.
 #[derive(Clone, Copy)]
@@ -82,7 +44,13 @@ impl View<'_> {
     }
 }
 
-pub(crate) fn pixels_of(batch: &FragmentBatch, mut each: impl FnMut(&Pixel<'_>)) {
+/// Calls `each` with every pixel of a batch and its place: the number of its view, x, y.
+pub(crate) fn each_pixel(
+    batch: &FragmentBatch,
+    warp: DepthWarp,
+    precision: SumPrecision,
+    mut each: impl FnMut([u32; 3], &PeeledPixel<'_>),
+) {
     let points = batch.linear_depth.iter().zip(&batch.one_minus_alpha);
     let points: Vec<(f32, f32)> = points.map(|(&z, &through)| (z, 1.0 - through)).collect();
     let colors: Vec<[f32; 3]> = (0..batch.len())
@@ -90,14 +58,19 @@ pub(crate) fn pixels_of(batch: &FragmentBatch, mut each: impl FnMut(&Pixel<'_>))
         .collect();
     for rows in batch.pixels() {
         let first = rows.start;
-        each(&Pixel {
-            place: [batch.view[first], batch.x[first], batch.y[first]],
-            points: &points[rows.clone()],
+        let place = [batch.view[first], batch.x[first], batch.y[first]];
+        let pixel = PeeledPixel {
+            observed: Observed {
+                fragments: &points[rows.clone()],
+                warp,
+                precision,
+            },
             transmittance: &batch.transmittance[rows.clone()],
             colors: &colors[rows.clone()],
             alpha_sum: &batch.alpha_sum[rows.clone()],
             fragment_count: &batch.fragment_count[rows],
-        });
+        };
+        each(place, &pixel);
     }
 }
 
@@ -147,25 +120,26 @@ pub(crate) fn gather<'a>(
     let mut hardnesses = Vec::new();
     for (number, view) in views.into_iter().enumerate() {
         sample.begin(view.part.rows);
-        // Columns of a dataset need none.
-        let warp = match recipe.inputs {
-            Inputs::Row(_) => None,
-            _ => Some(view.warp()?),
+        // Columns of a dataset need no warp, and have no weights.
+        let is_weighed = data.weights.is_some();
+        let warp = if is_weighed {
+            view.warp()?
+        } else {
+            DepthWarp::new(1.0, 1.0)
         };
         let (mut sum, mut pixels) = (0.0, 0);
         for batch in view.batches() {
             let batch = batch?;
-            pixels_of(&batch, |pixel| {
-                let [index, x, y] = pixel.place;
-                if !sample.keep([x, y], pixel.points.len()) {
+            each_pixel(&batch, warp, recipe.sums, |[index, x, y], pixel| {
+                if !sample.keep([x, y], pixel.observed.fragments.len()) {
                     return;
                 }
-                if let Some(warp) = &warp {
-                    sum += hardness(recipe, pixel, warp);
+                if is_weighed {
+                    sum += hardness(recipe, pixel);
                     pixels += 1;
                 }
                 let subset = view.split.pixel(index, x, y);
-                add(recipe, data, pixel, warp.as_ref(), subset);
+                add(recipe, data, pixel, subset);
             });
             after(number, batch.len(), data)?;
         }
@@ -174,19 +148,9 @@ pub(crate) fn gather<'a>(
     Ok(ViewWeights::new(&hardnesses))
 }
 
-/// Squared error of a pixel without the network, mean over the channels: how hard the pixel is. Drawn by the same slabs with the middle of
-/// the bounds, or by MBOIT-4.
-fn hardness(recipe: Recipe, pixel: &Pixel<'_>, warp: &DepthWarp) -> f64 {
-    let found: [f64; 3] = if let Inputs::Slabs(design, _) = recipe.inputs {
-        let points = pixel.points.iter().zip(pixel.colors);
-        let fragments: Vec<_> = points
-            .map(|(&(depth, alpha), &color)| Fragment::new(depth, alpha, color))
-            .collect();
-        slabs::composite(&fragments, [0.0; 3], warp, design, slabs::middle).map(f64::from)
-    } else {
-        by_moments(pixel, warp)
-    };
-    let mut error = found;
+/// Squared error of a pixel without the network, mean over the channels: how hard the pixel is.
+fn hardness(recipe: Recipe, pixel: &PeeledPixel<'_>) -> f64 {
+    let mut error = recipe.inputs.baseline(pixel);
     for (exact, color) in pixel.contributions().zip(pixel.colors) {
         for (e, &c) in error.iter_mut().zip(color) {
             *e -= exact * f64::from(c);
@@ -195,110 +159,46 @@ fn hardness(recipe: Recipe, pixel: &Pixel<'_>, warp: &DepthWarp) -> f64 {
     error.iter().map(|e| e * e / 3.0).sum()
 }
 
-/// The colour of a pixel over black that MBOIT-4 draws.
-fn by_moments(pixel: &Pixel<'_>, warp: &DepthWarp) -> [f64; 3] {
-    let t = moments::transmittances(pixel.points, warp, &Settings::FOUR);
-    let seen = pixel.points.iter().zip(t);
-    let seen: Vec<f64> = seen.map(|((_, alpha), t)| f64::from(*alpha) * t).collect();
-    let scale = (1.0 - pixel.behind()) / seen.iter().sum::<f64>().max(1e-12);
-    let mut sum = [0.0; 3];
-    for (seen, color) in seen.iter().zip(pixel.colors) {
-        for (sum, &c) in sum.iter_mut().zip(color) {
-            *sum += seen * scale * f64::from(c);
-        }
-    }
-    sum
-}
-
-fn values<'f, C>(features: &'f [&Feature<C>], known: &'f C) -> impl Iterator<Item = f64> + 'f {
-    features.iter().map(move |feature| (feature.value)(known))
-}
-
 /// Appends what the recipe learns from a pixel.
-fn add(
-    recipe: Recipe,
-    data: &mut TrainingData,
-    pixel: &Pixel<'_>,
-    warp: Option<&DepthWarp>,
-    subset: Subset,
-) {
-    match (recipe.inputs, warp) {
-        (Inputs::Row(features), _) => {
-            // Every row is an example with its transmittance as the target.
-            for (i, &(linear_depth, _)) in pixel.points.iter().enumerate() {
-                let row = Row {
-                    linear_depth,
-                    alpha_sum: pixel.alpha_sum[i],
-                    // Counts are far below 2²⁴, up to which 32-bit floats hold every integer.
-                    fragment_count: pixel.fragment_count[i] as f32,
-                };
-                data.push_row(values(features, &row), [pixel.transmittance[i].into()]);
-                data.end_example(1.0, subset);
+fn add(recipe: Recipe, data: &mut TrainingData, pixel: &PeeledPixel<'_>, subset: Subset) {
+    match recipe.inputs.examples(pixel) {
+        Examples::Rows(rows) => {
+            for row in rows {
+                data.push_row(row.inputs, row.targets);
+                data.end_example(row.weight, subset);
             }
         }
-        (Inputs::Moments(features), Some(warp)) => {
-            let all = nmt::Seen::all(pixel.points, warp);
-            for ((seen, &(_, alpha)), &t) in all.iter().zip(pixel.points).zip(pixel.transmittance) {
-                data.push_row(values(features, seen), [t.into()]);
-                // An error of T is seen as much as the fragment is opaque.
-                data.end_example(alpha * alpha, subset);
-            }
+        Examples::Pixel(fragments) => {
+            share_pixel(data, pixel, subset, recipe.inputs.known_apart(), &fragments);
         }
-        (Inputs::Layers(features), _) => color_row(features, data, pixel, subset),
-        (Inputs::Rest(features), Some(warp)) => {
-            let apart = recipe.output == Output::AnchoredShareSeparateEnds;
-            let all = anchored::seen(pixel.points, warp, recipe.sums);
-            let known = all.iter().map(|seen| {
-                let is_between = seen.place == Place::Between;
-                let guessed = is_between.then_some((seen.rest.absorbance, &seen.rest));
-                (seen.weight(|_| 0.0), guessed)
-            });
-            share_pixel(features, data, pixel, subset, apart, known);
-        }
-        (Inputs::Slabs(design, features), Some(warp)) => {
-            let all = slabs::seen(pixel.points, warp, design, recipe.sums);
-            let known = all.iter().map(|seen| {
-                let guessed = seen.between.as_ref();
-                let guessed = guessed.map(|b| (b.absorbance * (b.bounds[1] - b.bounds[0]), b));
-                (seen.weight(|_| 0.0), guessed)
-            });
-            share_pixel(features, data, pixel, subset, design.apart, known);
-        }
-        (_, None) => {}
     }
 }
-
-/// What is known of a fragment's weight without the network; and the absorbance that the network says a share of, which takes from that
-/// weight, and what the network reads, or none where the weight is known.
-type Known<'s, C> = (f64, Option<(f64, &'s C)>);
 
 /// The fragments of a pixel whose share the network is asked for, with the inputs of each, and what the others contribute: those are `apart`
 /// where they are not normalised with the rest.
-fn share_pixel<'s, C: 's>(
-    features: &[&Feature<C>],
+fn share_pixel(
     data: &mut TrainingData,
-    pixel: &Pixel<'_>,
+    pixel: &PeeledPixel<'_>,
     subset: Subset,
     apart: bool,
-    all: impl Iterator<Item = Known<'s, C>>,
+    fragments: &[FragmentExample],
 ) {
-    let all: Vec<_> = all.collect();
-    let guessed = all.iter().filter(|(_, guessed)| guessed.is_some()).count();
+    let guessed = fragments.iter().filter(|f| f.unknown.is_some()).count();
     // Exact whatever the network says: nothing to learn.
     if guessed == 0 || (apart && guessed == 1) {
         return;
     }
     let first = data.rows_held() as u32;
-    let mut left = 1.0 - pixel.behind();
+    let mut left = 1.0 - pixel.transmittance_behind();
     let mut fixed = [0.0f32; 8];
     for (i, exact) in pixel.contributions().enumerate() {
-        let ((weight, guessed), color) = (all[i], pixel.colors[i]);
+        let (fragment, color) = (&fragments[i], pixel.colors[i]);
         // What is known of its weight goes with its opacity.
-        let a = f64::from(pixel.points[i].1) * weight;
-        if let Some((guessed, inputs)) = guessed {
-            data.push_row(values(features, inputs), [exact]);
+        let a = f64::from(pixel.observed.fragments[i].1) * fragment.weight;
+        if let Some((absorbance, inputs)) = &fragment.unknown {
+            data.push_row(inputs.iter().copied(), [exact]);
             if let Some(pixels) = &mut data.pixels {
-                pixels.rows[REST].push(guessed as f32);
+                pixels.rows[REST].push(*absorbance as f32);
                 pixels.rows[ALPHA].push(a as f32);
                 for (column, c) in pixels.rows[COLOR..].iter_mut().zip(color) {
                     column.push(c);
@@ -321,27 +221,5 @@ fn share_pixel<'s, C: 's>(
             column.push(value);
         }
     }
-    data.end_example(1.0, subset);
-}
-
-/// One row for a pixel that shows more fragments than are composited exactly.
-fn color_row(
-    features: &[&Feature<Layers>],
-    data: &mut TrainingData,
-    pixel: &Pixel<'_>,
-    subset: Subset,
-) {
-    if pixel.points.len() <= FRONT || pixel.behind() >= 1.0 {
-        return;
-    }
-    let mut exact = [0.0f64; 3];
-    for (seen, color) in pixel.contributions().zip(pixel.colors) {
-        for (sum, &c) in exact.iter_mut().zip(color) {
-            *sum += seen * f64::from(c);
-        }
-    }
-    let alphas = pixel.points.iter().map(|&(_, alpha)| alpha);
-    let layers = Layers::of(alphas.zip(pixel.colors.iter().copied()));
-    data.push_row(values(features, &layers), exact.map(|c| c.min(1.0)));
     data.end_example(1.0, subset);
 }

@@ -82,7 +82,7 @@ mod report;
 mod sampler;
 mod scratch;
 mod table;
-mod train;
+mod training_loop;
 
 pub use checkpoint::{FILES as CHECKPOINT_FILES, folder as checkpoint_folder};
 pub use config::{Config, DEFAULT_BUFFER_ROWS, DEFAULT_MAX_ROWS, Schedule};
@@ -94,4 +94,4 @@ pub use report::{End, EpochReport, Outcome};
 pub use table::{
     ALPHA, COLOR, DataSplit, EXACT, KNOWN, LEFT, PixelColumns, REST, SUM, TrainingData, UsedRows,
 };
-pub use train::{RunOptions, train};
+pub use training_loop::{RunOptions, train};

@@ -10,7 +10,7 @@ use peelnet_model::{DatasetRef, Model};
 
 use crate::config::Config;
 use crate::error::TrainError;
-use crate::examples::{View, gather, pixels_of};
+use crate::examples::{View, each_pixel, gather};
 use crate::sampler::Sample;
 use crate::scratch::Scratch;
 use crate::table::{DataSplit, TrainingData, UsedRows};
@@ -226,6 +226,7 @@ pub fn held_out_errors(
     datasets: &[Dataset],
 ) -> Result<BTreeMap<String, f64>, TrainError> {
     let mut sums: BTreeMap<String, (f64, u64)> = BTreeMap::new();
+    let precision = model.meta.recipe.sums;
     for dataset in datasets {
         let parts = dataset.manifest().parts.iter();
         for part in parts.filter(|part| dataset.is_held_out(part)) {
@@ -238,9 +239,8 @@ pub fn held_out_errors(
             };
             let warp = view.warp()?;
             for batch in view.batches() {
-                pixels_of(&batch?, |pixel| {
-                    let precision = model.meta.recipe.sums;
-                    let weights = model.transmittances(pixel.points, &warp, precision);
+                each_pixel(&batch?, warp, precision, |_, pixel| {
+                    let weights = model.transmittances(&pixel.observed);
                     for (w, &t) in weights.iter().zip(pixel.transmittance) {
                         sum.0 += (w - f64::from(t)).abs();
                         sum.1 += 1;

@@ -22,7 +22,7 @@ pub(crate) struct Shape {
 impl Shape {
     pub(crate) fn new(config: &Config) -> Self {
         let recipe = config.recipe;
-        let inputs = recipe.inputs.about().len();
+        let inputs = recipe.inputs.features().len();
         let hidden = config.hidden.iter().copied();
         Self {
             widths: std::iter::once(inputs)

@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use peelnet_dataset::Subset;
-use peelnet_model::{DatasetRef, Inputs, Recipe};
+use peelnet_model::{DatasetRef, Recipe};
 
 use crate::error::TrainError;
 use crate::normalise::{Moments, Normalisation};
@@ -103,9 +103,9 @@ impl TrainingData {
 
     /// No rows, with the columns of a recipe.
     pub(crate) fn of_recipe(recipe: Recipe) -> Self {
-        let weighed = !matches!(recipe.inputs, Inputs::Row(_));
+        let weighed = !recipe.inputs.are_columns();
         Self {
-            inputs: vec![Vec::new(); recipe.inputs.about().len()],
+            inputs: vec![Vec::new(); recipe.inputs.features().len()],
             targets: vec![Vec::new(); recipe.output.count()],
             weights: weighed.then(Vec::new),
             pixels: recipe.loss.map(|_| PixelColumns::default()),

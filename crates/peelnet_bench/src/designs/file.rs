@@ -1,11 +1,11 @@
 use super::{DESIGNS, Entry, Source};
 use crate::EvalError;
 use peelnet_core::{
-    features::Feature,
-    methods::slabs::{Between, Design, Extent, FIVE, Kept, MAX_SLABS, NINE},
+    methods::slabs::{Between, Design, Extent, Kept, MAX_SLABS},
     statistics::{DEPTH_CODES, EndCode, FAR_END},
 };
-use peelnet_model::{Budget, Declaration, Inputs, Network, PixelLoss, Recipe};
+use peelnet_model::inputs::{FIVE, Feature, NINE, SlabInputs};
+use peelnet_model::{Budget, Declaration, Network, PixelLoss, Recipe};
 use serde::Deserialize;
 use std::path::Path;
 
@@ -135,7 +135,10 @@ impl RawDesign {
         let name = format!("design {}", self.name);
         let declaration = Declaration {
             name: Box::leak(name.into_boxed_str()),
-            inputs: Inputs::Slabs(trained, inputs),
+            inputs: Box::leak(Box::new(SlabInputs {
+                design: trained,
+                features: inputs,
+            })),
             network: Network {
                 hidden: Box::leak(hidden.into_boxed_slice()),
                 ..Recipe::LARGE.network
@@ -292,11 +295,9 @@ seed = 7
         assert_eq!(kept(full.design.slabs), [(1.0, false, false, true)]);
         let EndCode { bins, alphas } = full.design.records;
         assert_eq!((bins, alphas, full.design.extent), (960, 64, Extent::Frame));
-        let Inputs::Slabs(trained, inputs) = full.recipe.inputs else {
-            panic!("{:?}", full.recipe.inputs)
-        };
-        assert!(full.design.apart && !trained.apart);
-        assert_eq!((inputs.len(), full.seed), (6, 7));
+        let trained = full.recipe.inputs.downcast::<SlabInputs>().unwrap();
+        assert!(full.design.apart && !trained.design.apart);
+        assert_eq!((trained.features.len(), full.seed), (6, 7));
         assert_eq!(full.recipe.network.hidden, [8, 4]);
         assert_eq!(full.recipe.loss, Some(PixelLoss::Contributions));
         let budget = plain.recipe.budget;

@@ -9,11 +9,15 @@
 
 use crate::{
     absorbance::{DepthWarp, absorbance},
-    features::Rest,
     fragment::{Fragment, points},
     guards::FILL_MAX,
+    methods::{
+        known::{KnownFragment, Unknown},
+        moments::power::four_moment_bounds,
+    },
     statistics::{
-        self, FAR_END, NEAR_END, SAME_CODE, Statistics, SumPrecision, depth_code, zeta_of_code,
+        self, DEPTH_CODES, FAR_END, NEAR_END, SAME_CODE, Statistics, SumPrecision, depth_code,
+        zeta_of_code,
     },
 };
 
@@ -21,38 +25,82 @@ use crate::{
 /// waste the anchor.
 pub const FAINT: f32 = 1.0 / 255.0;
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Place {
-    Nearest,
-    Between,
-    Farthest,
-}
+/// Below this share of the pixel's absorbance the moments of the rest are rounding noise of 16-bit sums.
+const NOISE: f64 = 1.0 / 1024.0;
 
-/// What pass 2 knows of a fragment.
+/// Pull of the moments towards a measure that can be inverted, for [`Rest::moment_bounds`].
+const BIAS: f64 = 1.0 / 1024.0;
+
+/// More of that pull for narrow pixels: moments of the frame's range lose `scale⁴` of their precision where they are moved to
+/// the pixel's, and without it the bounds depend on the last bits of 32-bit sums.
+const BIAS_BY_SCALE: f64 = 1.0 / 65_536.0;
+
+/// Limit of the mean powers 2 to 4. In narrow pixels, the rounding of the ends and of the sums takes them beyond 1; bounds multiply
+/// up to seven of them, which 32 bits hold.
+const POWER_MAX: f64 = 65_536.0;
+
+/// The most of that pull.
+const BIAS_MAX: f64 = 0.25;
+
+/// The rest of a pixel, seen from one fragment: all fragments but that one and the pixel's ends. Depths are over the pixel's
+/// range, −1 at the nearest and 1 at the farthest fragment.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Seen {
-    pub place: Place,
-    /// Absorbance of all other fragments, `m_0`.
-    pub others: f64,
-    /// Absorbance of the nearest fragment, `b_n`; 0 where it does not lie in front.
-    pub front: f64,
-    /// All fragments but this one and the ends, which the network is asked about.
-    pub rest: Rest,
+pub struct Rest {
+    pub absorbance: f64,
+    pub place: f64,
+    /// Mean powers 1 to 4 of the rest's depth.
+    pub means: [f64; 4],
+    /// Pull of the moments towards a measure that can be inverted.
+    pub bias: f64,
 }
 
-impl Seen {
-    /// The weight, given what the network answers for a fragment that lies between the ends.
-    pub fn weight(&self, share: impl FnOnce(&Rest) -> f64) -> f64 {
-        match self.place {
-            Place::Nearest => 1.0,
-            Place::Between => (-(self.front + self.rest.absorbance * share(&self.rest))).exp(),
-            Place::Farthest => (-self.others).exp(),
+impl Rest {
+    /// Of a fragment at depth `zeta`, given the pixel's statistics and the moments `m` of the rest.
+    pub fn new(s: &Statistics, m: &[f64; 5], zeta: f64) -> Self {
+        let level = 2.0 / f64::from(DEPTH_CODES - 1);
+        let extent = (s.farthest - s.nearest).max(level);
+        let total = m[0].max(s.moments[0] * NOISE).max(1e-6);
+        // Moments over the pixel's range as −1 … 1: of (ζ − middle)·scale.
+        let middle = (s.nearest + s.farthest) / 2.0;
+        let scale = 2.0 / extent;
+        let [m1, m2, m3, m4] = [m[1] / total, m[2] / total, m[3] / total, m[4] / total];
+        let x1 = ((m1 - middle) * scale).clamp(-1.0, 1.0);
+        let x2 = (m2 - middle * (2.0 * m1 - middle)) * scale.powi(2);
+        let x3 = (m3 - middle * (3.0 * m2 - middle * (3.0 * m1 - middle))) * scale.powi(3);
+        let x4 = {
+            let inner = 6.0 * m2 - middle * (4.0 * m1 - middle);
+            (m4 - middle * (4.0 * m3 - middle * inner)) * scale.powi(4)
+        };
+        let power = |mean: f64| mean.clamp(-POWER_MAX, POWER_MAX);
+        Self {
+            absorbance: m[0],
+            place: ((zeta - middle) * scale).clamp(-1.0, 1.0),
+            means: [x1, power(x2), power(x3), power(x4)],
+            bias: (BIAS + BIAS_BY_SCALE * scale.powi(4)).min(BIAS_MAX),
         }
+    }
+
+    /// The least and the most of the rest's absorbance that can lie in front of the fragment, as shares, given four moments
+    /// (Münstermann et al. 2018, §3.2; overestimation 0 and 1). NaN, where the points of a bound coincide, becomes 0.
+    pub fn moment_bounds(&self) -> [f64; 2] {
+        let (low, high) = four_moment_bounds(self.means, self.bias, self.place);
+        [low, high].map(|share| if share > 0.0 { share.min(1.0) } else { 0.0 })
     }
 }
 
-/// What the network knows of each fragment of a pixel, in the order given: fragments are (linear depth, α).
-pub fn seen(fragments: &[(f32, f32)], warp: &DepthWarp, precision: SumPrecision) -> Vec<Seen> {
+impl Unknown for Rest {
+    fn absorbance(&self) -> f64 {
+        self.absorbance
+    }
+}
+
+/// What is known of each fragment of a pixel, in the order given: fragments are (linear depth, α). The unknown is all fragments but
+/// this one and the ends.
+pub fn known_fragments(
+    fragments: &[(f32, f32)],
+    warp: &DepthWarp,
+    precision: SumPrecision,
+) -> Vec<KnownFragment<Rest>> {
     let points = super::points(fragments, warp);
     let visible = || points.iter().filter(|point| point.2);
     // Without a visible fragment the targets keep their clear values.
@@ -72,15 +120,16 @@ pub fn seen(fragments: &[(f32, f32)], warp: &DepthWarp, precision: SumPrecision)
         .map(|&(b, zeta, is_visible)| {
             let code = depth_code(zeta);
             let (own_near, own_far) = (NEAR_END.mirrored(zeta, b), FAR_END.level(zeta, b));
-            let place = if !is_visible {
-                Place::Between
-            } else if code <= first + SAME_CODE {
-                Place::Nearest
-            } else if own_far == far {
-                Place::Farthest
-            } else {
-                Place::Between
+            let known = |front| KnownFragment {
+                front,
+                unknown: None,
             };
+            if is_visible && code <= first + SAME_CODE {
+                return known(0.0);
+            }
+            if is_visible && own_far == far {
+                return known(s.without(&[(b, zeta)])[0]);
+            }
             // An end that does not lie on its side of the fragment, or whose place in the target the fragment took itself (a
             // more opaque one in the same bin), stays with the rest.
             let front = if code > first && own_near != near {
@@ -94,11 +143,9 @@ pub fn seen(fragments: &[(f32, f32)], warp: &DepthWarp, precision: SumPrecision)
                 0.0
             };
             let rest = s.without(&[(b, zeta), (front, s.nearest), (back, s.farthest)]);
-            Seen {
-                place,
-                others: s.without(&[(b, zeta)])[0],
+            KnownFragment {
                 front,
-                rest: Rest::new(&s, &rest, zeta),
+                unknown: Some(Rest::new(&s, &rest, zeta)),
             }
         })
         .collect()
@@ -111,15 +158,15 @@ pub fn composite(
     separate_ends: bool,
     share: impl Fn(&Rest) -> f64,
 ) -> [f32; 3] {
-    let seen = seen(&points(fragments), warp, SumPrecision::Exact);
-    let weights = seen
+    let known = known_fragments(&points(fragments), warp, SumPrecision::Exact);
+    let weights = known
         .iter()
-        .map(|s| (s.weight(&share), s.place != Place::Between));
+        .map(|f| (f.weight(&share), f.unknown.is_none()));
     composite_weighted(fragments, background, separate_ends, weights)
 }
 
 /// Composites a pixel with the weight of each fragment, and whether it is known. Those have sums of their own where they are `apart`.
-pub(super) fn composite_weighted(
+pub fn composite_weighted(
     fragments: &[Fragment],
     background: [f32; 3],
     apart: bool,
@@ -198,15 +245,16 @@ mod tests {
             crate::fragment::sort_front_to_back(&mut f);
             let points = points(&f);
             let exact = over::composite(&f, C0);
-            let all = seen(&points, &warp, SumPrecision::Exact);
+            let all = known_fragments(&points, &warp, SumPrecision::Exact);
             for separate_ends in [false, true] {
                 let got = composite(&f, C0, &warp, separate_ends, |x| {
                     // Which fragment it is, by what it sees.
-                    let i = all.iter().position(|s| s.rest == *x).expect("one of them");
+                    let i = all.iter().position(|f| f.unknown == Some(*x));
+                    let i = i.expect("one of them");
                     let front: f64 = f[..i].iter().map(|f| absorbance(f.alpha)).sum();
-                    (front - all[i].front) / all[i].rest.absorbance
+                    (front - all[i].front) / x.absorbance
                 });
-                let same_level = all.iter().filter(|s| s.place != Place::Between).count() > 2;
+                let same_level = all.iter().filter(|f| f.unknown.is_none()).count() > 2;
                 for k in 0..3 {
                     assert!(
                         same_level || (got[k] - exact[k]).abs() < 1e-5,
@@ -221,8 +269,11 @@ mod tests {
     #[test]
     fn a_faint_fragment_is_no_anchor() {
         let f = [(1.0, 0.002), (2.0, 0.5), (3.0, 0.5)];
-        let s = seen(&f, &DepthWarp::new(1.0, 3.0), SumPrecision::Exact);
-        let places = [Place::Between, Place::Nearest, Place::Farthest];
-        assert!(s.iter().map(|s| s.place).eq(places));
+        let all = known_fragments(&f, &DepthWarp::new(1.0, 3.0), SumPrecision::Exact);
+        let [faint, nearest, farthest] = &all[..] else {
+            panic!("{all:?}")
+        };
+        assert!(faint.unknown.is_some() && farthest.unknown.is_none());
+        assert_eq!((nearest.front, nearest.unknown), (0.0, None));
     }
 }

@@ -1,6 +1,5 @@
 //! `deep-thesis`: Papakostas 2022 — eq 6 with a weight that a network predicts.
 
-use crate::features::Feature;
 use crate::fragment::Fragment;
 use crate::methods::wboit::{Sums, normalised};
 
@@ -22,17 +21,6 @@ impl Row {
         }
     }
 }
-
-/// The inputs of the thesis's network, `(z_i, Σα, n)`; in WGSL functions of `linear_depth` and `statistics`.
-pub static THESIS_INPUTS: [&Feature<Row>; 3] = [
-    &Feature::new("linear_depth", "scene units", "linear_depth", |row| {
-        row.linear_depth.into()
-    }),
-    &Feature::new("alpha_sum", "1", "statistics.x", |row| row.alpha_sum.into()),
-    &Feature::new("fragment_count", "1", "statistics.y", |row| {
-        row.fragment_count.into()
-    }),
-];
 
 /// Eq 6 with `weight(fragment)` as the weight; the weight must be positive and finite.
 pub fn composite(

@@ -7,10 +7,7 @@
 //! are summed behind the two nearest, where they subtract those from sums over all.
 
 use super::over;
-use crate::{
-    features::{Feature, Shared},
-    fragment::Fragment,
-};
+use crate::fragment::Fragment;
 
 /// Fragments that are composited exactly.
 pub const FRONT: usize = 2;
@@ -58,34 +55,6 @@ impl Layers {
     }
 }
 
-const AVERAGE: Shared = Shared {
-    name: "average",
-    wgsl: "behind / max(count, 1.0)",
-    module: None,
-};
-
-const fn feature(
-    name: &'static str,
-    wgsl: &'static str,
-    value: fn(&Layers) -> f64,
-) -> Feature<Layers> {
-    Feature::new(name, "1", wgsl, value)
-}
-
-/// The inputs of the network, in the published order; in WGSL functions of `front`, `behind`, `all` and `count`.
-pub static INPUTS: [&Feature<Layers>; 10] = [
-    &feature("average_alpha", "average.a", |l| l.average_alpha).sharing(&AVERAGE),
-    &feature("average_r", "average.r", |l| l.average[0]).sharing(&AVERAGE),
-    &feature("average_g", "average.g", |l| l.average[1]).sharing(&AVERAGE),
-    &feature("average_b", "average.b", |l| l.average[2]).sharing(&AVERAGE),
-    &feature("sum_r", "all.r", |layers| layers.sum[0]),
-    &feature("sum_g", "all.g", |layers| layers.sum[1]),
-    &feature("sum_b", "all.b", |layers| layers.sum[2]),
-    &feature("front_r", "front.r", |layers| layers.front[0]),
-    &feature("front_g", "front.g", |layers| layers.front[1]),
-    &feature("front_b", "front.b", |layers| layers.front[2]),
-];
-
 /// Composites a pixel; `network` predicts the colour of all fragments over black.
 pub fn composite(
     fragments: &[Fragment],
@@ -113,22 +82,6 @@ mod tests {
         let got = composite(&worked_example(), c0, |_| [0.5; 3]);
         for (g, b) in got.iter().zip(c0) {
             assert!((g - (0.5 + 0.0125 * b)).abs() < 1e-6, "{got:?}");
-        }
-    }
-
-    /// The worked example: ½ red, ½ green in front, ½ blue and 0.9 white behind them.
-    #[test]
-    fn known_fragments_have_known_inputs() {
-        let mut inputs = [0.0; 10];
-        composite(&worked_example(), [0.0; 3], |layers| {
-            inputs = INPUTS.map(|f| (f.value)(layers));
-            [0.0; 3]
-        });
-        // Behind: α (0.5 + 0.9)/2, colour (blue + white)/2. Sum: ½ of each and 0.9. Front: ½ red and ¼ green.
-        let want = [0.7, 0.5, 0.5, 1.0, 1.4, 1.4, 1.4, 0.5, 0.25, 0.0];
-        for (got, want) in inputs.iter().zip(want) {
-            // 0.9 in 32 bits.
-            assert!((got - want).abs() < 1e-7, "{inputs:?}");
         }
     }
 }

@@ -5,6 +5,7 @@
 pub mod anchored;
 pub mod deep;
 pub mod dfaoit;
+pub mod known;
 pub mod moments;
 pub mod nmt;
 pub mod over;

@@ -9,10 +9,7 @@
 //! sum no colour.
 
 use super::moments::{Basis, Moments};
-use crate::{
-    absorbance::{DepthWarp, absorbance},
-    features::Feature,
-};
+use crate::absorbance::{DepthWarp, absorbance};
 
 /// The most absorbance of one fragment: `e⁻¹⁰ ≈ 4.5e−5`.
 pub const ABSORBANCE_MAX: f64 = 10.0;
@@ -56,75 +53,5 @@ impl Seen {
         let [nearest, farthest] = self.extent;
         let beyond = |zeta: f64| ((zeta - nearest) / 2.0).exp() - 1.0;
         (beyond(self.zeta) / beyond(farthest).max(EXTENT_FLOOR)).clamp(0.0, 1.0)
-    }
-}
-
-/// The inputs of the network, in the published order: depth, the number of fragments, `b_0`, and `b_1 … b_4`. In WGSL functions of `zeta`,
-/// `extent`, `totals` and `moments`.
-pub static INPUTS: [&Feature<Seen>; 7] = [
-    &Feature::new(
-        "depth",
-        "exponentially, 0 .. 1 from the pixel's nearest to its farthest fragment",
-        "peelnet_depth(zeta, extent)",
-        Seen::depth,
-    ),
-    &Feature::new("fragment_count", "1", "totals.y", |seen| seen.count as f64),
-    &Feature::new("absorbance", "1", "totals.x", |seen| seen.moments[0]),
-    &Feature::new("moment_1", "1", "moments.x", |seen| seen.moments[1]),
-    &Feature::new("moment_2", "1", "moments.y", |seen| seen.moments[2]),
-    &Feature::new("moment_3", "1", "moments.z", |seen| seen.moments[3]),
-    &Feature::new("moment_4", "1", "moments.w", |seen| seen.moments[4]),
-];
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Of a range 1 … e², ζ = ln z − 1.
-    fn inputs(points: &[(f32, f32)]) -> Vec<[f64; 7]> {
-        let warp = DepthWarp::new(1.0, 2f64.exp());
-        let all = Seen::all(points, &warp);
-        all.iter()
-            .map(|seen| INPUTS.map(|f| (f.value)(seen)))
-            .collect()
-    }
-
-    /// 32-bit depths and opacities.
-    fn close(got: [f64; 7], want: [f64; 7]) {
-        for (a, b) in got.iter().zip(&want) {
-            assert!((a - b).abs() < 1e-6, "{got:?} {want:?}");
-        }
-    }
-
-    /// Two fragments of α = ½ and ¾ at ζ = −½ and 1, one between them at ζ = ½: b = ln 2, ln 4 and 0. The middle one's depth is
-    /// `(e^½ − 1)/(e^¾ − 1)`.
-    #[test]
-    fn known_fragments_have_known_inputs() {
-        let (a, b) = (0.5f32.exp(), 2f32.exp());
-        let middle = 1.5f32.exp();
-        let ln2 = 2f64.ln();
-        let rest = [
-            3.0,
-            3.0 * ln2,
-            (-0.5 + 2.0) * ln2,
-            (0.25 + 2.0) * ln2,
-            (-0.125 + 2.0) * ln2,
-            (0.0625 + 2.0) * ln2,
-        ];
-        let with = |depth: f64| {
-            let [n, b0, b1, b2, b3, b4] = rest;
-            [depth, n, b0, b1, b2, b3, b4]
-        };
-        let got = inputs(&[(b, 0.75), (middle, 0.0), (a, 0.5)]);
-        close(got[0], with(1.0));
-        close(got[1], with((0.5f64.exp() - 1.0) / (0.75f64.exp() - 1.0)));
-        close(got[2], with(0.0));
-    }
-
-    /// A pixel without an extent has the depth 0, and opaque fragments an absorbance of 10.
-    #[test]
-    fn single_and_opaque_fragments_are_finite() {
-        let got = inputs(&[(1f32.exp(), 1.0)]);
-        close(got[0], [0.0, 1.0, 10.0, 0.0, 0.0, 0.0, 0.0]);
     }
 }

@@ -8,11 +8,12 @@
 //! Three geometry passes: the range, the sums and records, the colours. Records are levels of depth and opacity under MAX blending
 //! ([`EndCode`]). The shader twin is `learned/slabs.wgsl`, with the file of a [`Layout`], such as `slabs_small.wgsl`.
 
-mod inputs;
-
-pub use inputs::{FIVE, NINE};
-
-use super::{Point, anchored::composite_weighted, point, points};
+use super::{
+    Point,
+    anchored::composite_weighted,
+    known::{KnownFragment, Unknown},
+    point, points,
+};
 use crate::{
     absorbance::DepthWarp,
     fragment::Fragment,
@@ -238,23 +239,13 @@ pub struct Between {
     pub nearest: f64,
 }
 
-/// What the last pass knows of a fragment.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Seen {
-    /// Absorbance that is known to lie in front.
-    pub front: f64,
-    /// What else may; nothing in front of a slab's nearest and behind its farthest fragment.
-    pub between: Option<Between>,
-}
+impl Unknown for Between {
+    fn absorbance(&self) -> f64 {
+        self.absorbance
+    }
 
-impl Seen {
-    /// The weight, given where between the bounds the share lies that is in front, 0 … 1.
-    pub fn weight(&self, guess: impl FnOnce(&Between) -> f64) -> f64 {
-        let between = self.between.map_or(0.0, |between| {
-            let [low, high] = between.bounds;
-            between.absorbance * (low + (high - low) * guess(&between))
-        });
-        (-(self.front + between)).exp()
+    fn bounds(&self) -> [f64; 2] {
+        self.bounds
     }
 }
 
@@ -318,7 +309,7 @@ impl Slabs {
         }
     }
 
-    pub fn seen(&self, absorbance: f64, zeta: f64, counts: bool) -> Seen {
+    pub fn known(&self, absorbance: f64, zeta: f64, counts: bool) -> KnownFragment<Between> {
         let place = self.place(absorbance, zeta);
         let slab = &self.slabs[place.slab];
         let before: f64 = self.slabs[..place.slab].iter().map(|s| s.absorbance).sum();
@@ -333,15 +324,15 @@ impl Slabs {
             None
         };
         if let Some(inside) = known {
-            return Seen {
+            return KnownFragment {
                 front: before + inside,
-                between: None,
+                unknown: None,
             };
         }
         let between = self.between(&place, slab, others);
-        Seen {
+        KnownFragment {
             front: before + between.nearest,
-            between: Some(between),
+            unknown: Some(between),
         }
     }
 
@@ -414,16 +405,16 @@ impl Slabs {
 }
 
 /// What is known of each of a pixel's fragments, given as (linear depth, α), in the order given.
-pub fn seen(
+pub fn known_fragments(
     fragments: &[(f32, f32)],
     warp: &DepthWarp,
     design: Design,
     precision: SumPrecision,
-) -> Vec<Seen> {
+) -> Vec<KnownFragment<Between>> {
     let points = points(fragments, warp);
     let slabs = Slabs::of(&points, design, precision);
-    let of = |&(b, zeta, counts): &Point| slabs.seen(b, zeta, counts);
-    points.iter().map(of).collect()
+    let known = |&(b, zeta, counts): &Point| slabs.known(b, zeta, counts);
+    points.iter().map(known).collect()
 }
 
 /// The guess without a network: the middle of the bounds.
@@ -457,8 +448,8 @@ pub fn composite_on(
     let points: Vec<Point> = all.map(|f| point(f.alpha, zeta(f.depth))).collect();
     let slabs = Slabs::of(&points, design, precision);
     let weights = points.iter().map(|&(b, zeta, counts)| {
-        let seen = slabs.seen(b, zeta, counts);
-        (seen.weight(&guess), seen.between.is_none())
+        let known = slabs.known(b, zeta, counts);
+        (known.weight(&guess), known.unknown.is_none())
     });
     composite_weighted(fragments, background, design.apart, weights)
 }

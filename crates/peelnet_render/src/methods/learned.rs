@@ -1,7 +1,7 @@
 use super::prelude::*;
 use crate::target::LearnedWeight;
 use peelnet_core::{absorbance::DepthWarp, statistics::SumPrecision};
-use peelnet_model::{Model, Recipe};
+use peelnet_model::{Model, Recipe, inputs::Observed};
 
 impl LearnedWeight {
     /// The network that ships for a method; `None` for a method that has none.
@@ -38,10 +38,13 @@ pub(super) fn learned_transmittances(
     warp: &DepthWarp,
     model: Option<&Model>,
 ) -> Option<Vec<f64>> {
-    let precision = match spec.guarantees().statistics {
-        Precision::Half => SumPrecision::Half,
-        Precision::Full => SumPrecision::Exact,
-    };
-    let all = model?.transmittances(fragments, warp, precision);
+    let all = model?.transmittances(&Observed {
+        fragments,
+        warp: *warp,
+        precision: match spec.guarantees().statistics {
+            Precision::Half => SumPrecision::Half,
+            Precision::Full => SumPrecision::Exact,
+        },
+    });
     (!all.is_empty() || fragments.is_empty()).then_some(all)
 }

@@ -42,25 +42,6 @@ pub fn source(path: &str) -> Result<&'static str, ShaderError> {
     found.map(|(_, text)| *text).ok_or_else(|| no_module(path))
 }
 
-/// The modules of a text that composites in slabs: of what surrounds `peelnet_network`, which says where between its bounds the share of
-/// the absorbance lies that is in front of a fragment. `layout`: `small`, `medium` or `large`.
-pub fn slab_modules(layout: &str) -> Vec<&'static str> {
-    let statistics = match layout {
-        "small" => "learned::slabs_small",
-        "medium" => "learned::slabs_medium",
-        _ => "learned::slabs_large",
-    };
-    vec![
-        "learned::zeta",
-        "learned::absorbance",
-        "learned::levels",
-        "learned::slabs",
-        statistics,
-        "learned::resolve",
-        "learned::composite",
-    ]
-}
-
 thread_local! {
     /// The module that has another text on this thread, and that text.
     static ALTERED: RefCell<Option<(String, String)>> = const { RefCell::new(None) };

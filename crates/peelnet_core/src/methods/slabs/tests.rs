@@ -79,16 +79,16 @@ fn depths_that_are_rounded_otherwise_are_known_still() {
         let points = points(&list, &warp());
         let slabs = Slabs::of(&points, design, SumPrecision::Exact);
         for &(b, zeta, counts) in &points {
-            let was = slabs.seen(b, zeta, counts);
+            let was = slabs.known(b, zeta, counts);
             let [own, one, other] = [zeta, zeta - MOVED, zeta + MOVED].map(|z| slabs.place(b, z));
             let in_one_slab = [one, other].iter().all(|p| p.slab == own.slab);
-            if was.between.is_some() || !in_one_slab {
+            if was.unknown.is_some() || !in_one_slab {
                 continue;
             }
             known += 1;
             in_other_bins += usize::from(one.bin != own.bin || other.bin != own.bin);
             for moved in [zeta - MOVED, zeta + MOVED] {
-                assert_eq!(slabs.seen(b, moved, counts), was, "{zeta} of {list:?}");
+                assert_eq!(slabs.known(b, moved, counts), was, "{zeta} of {list:?}");
             }
         }
     }
@@ -118,13 +118,13 @@ fn bounds_hold() {
         let f = at(&places, MOST, &mut random);
         let list = points_of(&f);
         let mut front = 0.0f64;
-        let all = seen(&list, &warp(), Design::LARGE, SumPrecision::Exact);
-        for (f, seen) in f.iter().zip(all) {
-            let [least, most] = [0.0, 1.0].map(|guess| -seen.weight(|_| guess).ln());
+        let all = known_fragments(&list, &warp(), Design::LARGE, SumPrecision::Exact);
+        for (f, fragment) in f.iter().zip(all) {
+            let [least, most] = [0.0, 1.0].map(|guess| -fragment.weight(|_| guess).ln());
             let holds = least - limit <= front && front <= most + limit;
-            assert!(holds, "{front}, not {least} … {most}: {seen:?}");
-            guessed += usize::from(seen.between.is_some());
-            unbounded += seen.between.map_or(0.0, |between| between.absorbance);
+            assert!(holds, "{front}, not {least} … {most}: {fragment:?}");
+            guessed += usize::from(fragment.unknown.is_some());
+            unbounded += fragment.unknown.map_or(0.0, |between| between.absorbance);
             width += most - least;
             front += absorbance(f.alpha);
         }

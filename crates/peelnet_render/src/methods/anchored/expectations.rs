@@ -2,7 +2,7 @@
 
 use crate::methods::{expected::*, learned::learned_transmittances};
 use peelnet_core::methods::anchored;
-use peelnet_model::{Inputs, Output};
+use peelnet_model::inputs::AnchoredInputs;
 
 pub(super) const ANCHORED: Expectations = Expectations {
     guarantees: |_| Guarantees {
@@ -12,19 +12,12 @@ pub(super) const ANCHORED: Expectations = Expectations {
     },
     reference: Some(|_, p| {
         let model = p.model?;
-        let separate_ends = model.meta.output == Output::AnchoredShareSeparateEnds;
-        let Inputs::Rest(features) = model.meta.recipe.inputs else {
-            return None;
-        };
+        let inputs = model.meta.recipe.inputs.downcast::<AnchoredInputs>()?;
         let (fragments, c0) = (p.fragments, p.background);
-        let share = |rest: &_| model.answer(features, rest);
-        Some(anchored::composite(
-            fragments,
-            c0,
-            &p.warp,
-            separate_ends,
-            share,
-        ))
+        let (apart, share) = (inputs.separate_ends, |rest: &_| {
+            model.answer(inputs.features, rest)
+        });
+        Some(anchored::composite(fragments, c0, &p.warp, apart, share))
     }),
     estimate: Some(learned_transmittances),
     ..Expectations::DEFAULT

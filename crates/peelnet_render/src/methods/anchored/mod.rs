@@ -5,7 +5,6 @@ mod expectations;
 
 use crate::methods::prelude::*;
 use peelnet_core::statistics::SumPrecision;
-use peelnet_model::Output;
 
 const fn anchored(name: &'static str, about: &'static str) -> Method {
     Method {
@@ -33,7 +32,7 @@ pub(super) const MEDIUM: Method = Method {
 
 fn passes(p: &mut Passes<'_>) {
     let recipe = p.on.recipe.expect("its network's");
-    let ends = (recipe.output == Output::AnchoredShareSeparateEnds).then_some(ENDS);
+    let ends = recipe.inputs.known_apart().then_some(ENDS);
     let feature = ends.map(|_| "separate_ends");
     let statistic = |label, blend| Target {
         full: recipe.sums == SumPrecision::Exact,

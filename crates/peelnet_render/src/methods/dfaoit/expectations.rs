@@ -2,7 +2,7 @@
 
 use crate::methods::{depth_peel::expectations::COINCIDENT, expected::*};
 use peelnet_core::methods::dfaoit;
-use peelnet_model::Inputs;
+use peelnet_model::inputs::DfaoitInputs;
 
 pub(super) const METHOD: Expectations = Expectations {
     // The colour is the network's, not a mean.
@@ -12,11 +12,9 @@ pub(super) const METHOD: Expectations = Expectations {
     },
     reference: Some(|_, p| {
         let model = p.model?;
-        let Inputs::Layers(features) = model.meta.recipe.inputs else {
-            return None;
-        };
+        let inputs = model.meta.recipe.inputs.downcast::<DfaoitInputs>()?;
         let network = |known: &dfaoit::Layers| {
-            let color = model.answers(features, known);
+            let color = model.answers(inputs.features, known);
             [0, 1, 2].map(|k| color[k] as f32)
         };
         Some(dfaoit::composite(p.fragments, p.background, network))

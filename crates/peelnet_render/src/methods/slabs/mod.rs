@@ -6,7 +6,7 @@ pub mod reference;
 
 use crate::methods::prelude::*;
 use peelnet_core::methods::slabs::Layout;
-use peelnet_model::Inputs;
+use peelnet_model::inputs::{SlabInputs, slab_surroundings};
 
 const KEEP: Parameter = Parameter::words(
     "keep",
@@ -100,18 +100,16 @@ fn statistics(layout: Layout) -> Vec<Target> {
 
 fn passes(p: &mut Passes<'_>) {
     let layout = if let Some(recipe) = p.on.recipe {
-        let Inputs::Slabs(design, _) = recipe.inputs else {
-            unreachable!("the recipe of a method of slabs reads slabs");
-        };
-        let layout = design.layout();
-        layout.expect("recipes that are drawn keep what a layout holds")
+        let inputs = recipe.inputs.downcast::<SlabInputs>();
+        let layout = inputs.and_then(|inputs| inputs.design.layout());
+        layout.expect("the recipe of a method of slabs keeps what a layout holds")
     } else {
         p.network.push_str(
             "// The guess without a network: the middle between the bounds.\n\
              fn peelnet_network(between: PeelnetBetween) -> f32 {\n    return 0.5;\n}\n",
         );
         let layout = plain_layout(p.on.spec);
-        for module in crate::shaders::slab_modules(layout.name()) {
+        for module in slab_surroundings(layout).modules {
             let text = crate::shaders::source(module);
             p.network.push_str(text.expect("modules of the repository"));
         }

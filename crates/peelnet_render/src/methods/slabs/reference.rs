@@ -7,7 +7,7 @@ use peelnet_core::{
     methods::slabs::{self, Between, Design, Extent},
     statistics::SumPrecision,
 };
-use peelnet_model::{Inputs, Model};
+use peelnet_model::{Model, inputs::SlabInputs};
 
 /// A guess of where between its bounds the share lies that is in front of a fragment.
 type Guess<'m> = Box<dyn Fn(&Between) -> f64 + 'm>;
@@ -19,11 +19,9 @@ fn design_and_guess<'m>(
 ) -> Option<(Design, Guess<'m>)> {
     let (design, guess): (_, Guess<'m>) = if spec.needs_model() {
         let model = model?;
-        let Inputs::Slabs(design, features) = model.meta.recipe.inputs else {
-            return None;
-        };
-        let guess = move |between: &_| model.answer(features, between);
-        (design, Box::new(guess))
+        let inputs = model.meta.recipe.inputs.downcast::<SlabInputs>()?;
+        let guess = move |between: &_| model.answer(inputs.features, between);
+        (inputs.design, Box::new(guess))
     } else {
         (plain_layout(spec).design(), Box::new(slabs::middle))
     };
@@ -51,6 +49,6 @@ pub fn transmittances(
 ) -> Option<Vec<f64>> {
     let (design, guess) = design_and_guess(spec, model)?;
     let half = SumPrecision::Half;
-    let seen = slabs::seen(fragments, warp, design, half);
-    Some(seen.iter().map(|seen| seen.weight(&guess)).collect())
+    let known = slabs::known_fragments(fragments, warp, design, half);
+    Some(known.iter().map(|f| f.weight(&guess)).collect())
 }

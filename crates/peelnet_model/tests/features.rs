@@ -1,9 +1,7 @@
 //! Features of the rest of a pixel in closed form: every constant of theirs, a tenth larger, moves a value here by more than a rounding.
 
-use peelnet_core::{
-    features::{Rest, all},
-    statistics::Statistics,
-};
+use peelnet_core::{methods::anchored::Rest, statistics::Statistics};
+use peelnet_model::inputs::{REST, values};
 
 const TOLERANCE: f64 = 1e-9;
 
@@ -31,8 +29,7 @@ fn of_two_layers() {
     for shift in [0.0, 0.25, -0.4] {
         let layers = [(1.0, shift - 0.25), (3.0, shift + 0.25)];
         let rest = seen(&layers, shift + 0.1, 9.0, [shift - 0.5, shift + 0.5]);
-        let [root, depth, mean, ..] = all(&rest);
-        let found = [root, depth, mean].into_iter().chain(rest.means);
+        let found = values(&REST[..3], &rest).into_iter().chain(rest.means);
         // Mean powers of −½ once and ½ three times.
         let wanted = [2.0, 0.6, 0.625, 0.25, 0.25, 0.0625, 0.0625];
         found
@@ -46,7 +43,7 @@ fn of_two_layers() {
 fn little_is_noise() {
     for (b, absorbance, mean) in [(5e-4, 1.024, 0.6), (5e-7, 1e-5, 0.6), (2e-3, 1.024, 0.7)] {
         near(
-            all(&seen(&[(b, 0.4)], 0.0, absorbance, [-1.0, 1.0]))[2],
+            values(&REST, &seen(&[(b, 0.4)], 0.0, absorbance, [-1.0, 1.0]))[2],
             mean,
         );
     }

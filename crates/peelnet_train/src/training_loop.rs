@@ -360,7 +360,7 @@ impl Run<'_> {
         let held_out = row.and_then(|r| r.held_out_loss);
         let chosen_by_it = self.config.patience.is_some();
         let recipe = self.config.recipe;
-        let about = recipe.inputs.about();
+        let about = recipe.inputs.features();
         let inputs = about.iter().zip(&self.normalisation);
         let inputs = inputs.map(|(about, n)| Input {
             name: about.name.to_owned(),

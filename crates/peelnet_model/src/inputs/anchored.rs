@@ -1,0 +1,148 @@
+//! `deep-anchored-*`: the rest of a pixel, seen from a fragment. Whole pixels are examples.
+//!
+//! A network that is asked about a fragment reads what a first pass knows of the fragment's pixel: the fragment's *own share* is taken out of
+//! the pixel's moments, and the shares of the two ends, which are known; the network is asked where the rest lies. What lies in front of a
+//! fragment does not depend on the fragment. All features of the rest are free of scene scale and unit.
+
+use super::{feature::*, network_inputs::*, surroundings::*};
+use peelnet_core::methods::{
+    anchored::{self, Rest},
+    known::KnownFragment,
+};
+
+const OF_REST: &str = "of the rest's absorbance";
+
+const MOMENT_BOUNDS: Shared = Shared {
+    name: "bounds",
+    wgsl: "peelnet_moment_bounds(rest)",
+    module: Some("learned::moment_bounds"),
+};
+
+/// All features of the rest.
+pub static REST: [&Feature<Rest>; 5] = [
+    &Feature::new(
+        "root_absorbance",
+        "root of the rest's absorbance",
+        "rest.root_absorbance",
+        |rest| rest.absorbance.sqrt(),
+    ),
+    &Feature::new(
+        "depth_fraction",
+        "of the pixel's depth range",
+        "0.5 * rest.place + 0.5",
+        |rest| (rest.place + 1.0) / 2.0,
+    ),
+    &Feature::new(
+        "mean_fraction",
+        "of the pixel's depth range",
+        "0.5 * rest.means.x + 0.5",
+        |rest| (rest.means[0] + 1.0) / 2.0,
+    ),
+    &Feature::<Rest>::new("share_low", OF_REST, "bounds.x", |r| r.moment_bounds()[0])
+        .sharing(&MOMENT_BOUNDS),
+    &Feature::<Rest>::new("share_high", OF_REST, "bounds.y", |r| r.moment_bounds()[1])
+        .sharing(&MOMENT_BOUNDS),
+];
+
+/// The rest of a pixel. The first feature must be the root of its absorbance.
+#[derive(Debug)]
+pub struct AnchoredInputs {
+    /// The features, in order.
+    pub features: &'static [&'static Feature<Rest>],
+    /// Whether the nearest and the farthest fragment accumulate apart.
+    pub separate_ends: bool,
+}
+
+impl NetworkInputs for AnchoredInputs {
+    fn features(&self) -> Vec<&'static About> {
+        about(self.features)
+    }
+
+    fn surroundings(&self) -> &'static Surroundings {
+        if self.separate_ends {
+            &SEPARATE_ENDS
+        } else {
+            &ONE_SUM
+        }
+    }
+
+    fn transmittances(&self, pixel: &Observed<'_>, network: Forward<'_>) -> Vec<f64> {
+        fraction_transmittances(&known(pixel), self.features, network)
+    }
+
+    fn examples(&self, pixel: &PeeledPixel<'_>) -> Examples {
+        fraction_examples(&known(&pixel.observed), self.features)
+    }
+
+    fn known_apart(&self) -> bool {
+        self.separate_ends
+    }
+}
+
+fn known(pixel: &Observed<'_>) -> Vec<KnownFragment<Rest>> {
+    anchored::known_fragments(pixel.fragments, &pixel.warp, pixel.precision)
+}
+
+static ONE_SUM: Surroundings = Surroundings {
+    parameters: "rest: PeelnetRest",
+    modules: &[
+        "learned::zeta",
+        "learned::absorbance",
+        "learned::levels",
+        "learned::anchored",
+        "learned::anchored_fragment",
+        "learned::resolve",
+        "learned::composite",
+    ],
+    before: ZETA,
+    passes: &[
+        STATISTICS,
+        pass(
+            "weights",
+            &["moments", "extent"],
+            weight("peelnet_fragment(alpha, zeta, moments, extent).x"),
+            SUMS,
+        ),
+    ],
+    resolve: "peelnet_resolve(sums, moments.x, background)",
+};
+
+static SEPARATE_ENDS: Surroundings = Surroundings {
+    modules: &[
+        "learned::zeta",
+        "learned::absorbance",
+        "learned::levels",
+        "learned::anchored",
+        "learned::anchored_fragment",
+        "learned::resolve_separate_ends",
+    ],
+    passes: &[
+        STATISTICS,
+        pass(
+            "weights",
+            &["moments", "extent"],
+            Some(Value {
+                name: "f",
+                kind: ValueKind::Pair,
+                call: "peelnet_fragment(alpha, zeta, moments, extent)",
+            }),
+            &[sum("sums", HALF, BETWEEN), sum("ends", HALF, ENDS)],
+        ),
+    ],
+    resolve: "peelnet_resolve(sums, ends, moments.x, background)",
+    ..ONE_SUM
+};
+
+const STATISTICS: Pass = pass(
+    "statistics",
+    &[],
+    statistics("peelnet_statistics(alpha, zeta)"),
+    &[
+        sum("moments", HALF, "s.moments"),
+        most_and_sum("extent", "s.extent"),
+    ],
+);
+
+const BETWEEN: &str = "vec4f(alpha * rgb, alpha) * (f.x * (1.0 - min(f.y, 1.0)))";
+
+const ENDS: &str = "vec4f(alpha * rgb, alpha) * (f.x * min(f.y, 1.0))";

@@ -1,0 +1,181 @@
+//! All that differs between kinds of inputs.
+
+use super::{
+    feature::{About, Feature, values},
+    surroundings::Surroundings,
+};
+use peelnet_core::{
+    absorbance::DepthWarp,
+    methods::{
+        known::{KnownFragment, Unknown},
+        moments::{self, Settings},
+    },
+    statistics::SumPrecision,
+};
+use std::{any::Any, fmt};
+
+/// A kind of inputs. What must hold of one: `CONTRIBUTING.md`, "Add a feature to a recipe".
+pub trait NetworkInputs: Any + fmt::Debug + Sync {
+    /// Names, units and WGSL of the features, in order.
+    fn features(&self) -> Vec<&'static About>;
+
+    /// What surrounds the network in an exported text, and what a renderer does around that text.
+    fn surroundings(&self) -> &'static Surroundings;
+
+    /// The weight of every fragment of a pixel, an estimate of the transmittance in front of it, in the fragments' order. Empty where the
+    /// network predicts none.
+    fn transmittances(&self, _pixel: &Observed<'_>, _network: Forward<'_>) -> Vec<f64> {
+        Vec::new()
+    }
+
+    /// What a recipe learns from a pixel.
+    fn examples(&self, pixel: &PeeledPixel<'_>) -> Examples;
+
+    /// Whether the inputs are columns of a dataset as they are: the network is evaluated in 32 bits as published, examples have no weights,
+    /// and nothing depends on warped depth.
+    fn are_columns(&self) -> bool {
+        false
+    }
+
+    /// Whether fragments whose weight is known without the network have sums of their own, which are not normalised with the others'.
+    fn known_apart(&self) -> bool {
+        false
+    }
+
+    /// The colour of a pixel over black without the network, whose error says how hard the pixel is: drawn by MBOIT-4.
+    fn baseline(&self, pixel: &PeeledPixel<'_>) -> [f64; 3] {
+        let Observed {
+            fragments, warp, ..
+        } = pixel.observed;
+        let t = moments::transmittances(fragments, &warp, &Settings::FOUR);
+        let drawn = fragments.iter().zip(t);
+        let drawn: Vec<f64> = drawn.map(|((_, alpha), t)| f64::from(*alpha) * t).collect();
+        let scale = (1.0 - pixel.transmittance_behind()) / drawn.iter().sum::<f64>().max(1e-12);
+        let mut sum = [0.0; 3];
+        for (drawn, color) in drawn.iter().zip(pixel.colors) {
+            for (sum, &c) in sum.iter_mut().zip(color) {
+                *sum += drawn * scale * f64::from(c);
+            }
+        }
+        sum
+    }
+
+    /// What targets hold after all fragments, by their names in the surroundings, where a self-test says it.
+    fn target_values(&self, _pixel: &Observed<'_>) -> Vec<(&'static str, Vec<f32>)> {
+        Vec::new()
+    }
+}
+
+impl dyn NetworkInputs {
+    /// These inputs, if they are of that kind.
+    pub fn downcast<T: NetworkInputs>(&self) -> Option<&T> {
+        (self as &dyn Any).downcast_ref()
+    }
+}
+
+/// The first output of a network for raw inputs.
+pub type Forward<'a> = &'a dyn Fn(&[f64]) -> f64;
+
+/// A pixel as geometry passes see it.
+#[derive(Clone, Copy, Debug)]
+pub struct Observed<'a> {
+    /// Linear depth and opacity, in any order.
+    pub fragments: &'a [(f32, f32)],
+    /// Over the frame's range of depth.
+    pub warp: DepthWarp,
+    /// How sums are kept.
+    pub precision: SumPrecision,
+}
+
+/// A pixel of a dataset, nearest fragment first.
+#[derive(Clone, Copy, Debug)]
+pub struct PeeledPixel<'a> {
+    /// Depths and opacities.
+    pub observed: Observed<'a>,
+    /// `T_i`.
+    pub transmittance: &'a [f32],
+    /// Un-premultiplied radiance.
+    pub colors: &'a [[f32; 3]],
+    /// The pixel's sum of opacities as each row has it.
+    pub alpha_sum: &'a [f32],
+    /// The number of its fragments, likewise.
+    pub fragment_count: &'a [u32],
+}
+
+impl PeeledPixel<'_> {
+    /// `T_∞`.
+    pub fn transmittance_behind(&self) -> f64 {
+        let last = self
+            .observed
+            .fragments
+            .last()
+            .zip(self.transmittance.last());
+        last.map_or(1.0, |((_, alpha), t)| {
+            f64::from(*t) * f64::from(1.0 - alpha)
+        })
+    }
+
+    /// `α_i T_i`: how much of each fragment is seen.
+    pub fn contributions(&self) -> impl Iterator<Item = f64> + '_ {
+        let fragments = self.observed.fragments.iter().zip(self.transmittance);
+        fragments.map(|((_, alpha), t)| f64::from(*alpha) * f64::from(*t))
+    }
+}
+
+/// What a recipe learns from a pixel.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Examples {
+    /// Every row is an example.
+    Rows(Vec<RowExample>),
+    /// The pixel is one example: all of its fragments, nearest first.
+    Pixel(Vec<FragmentExample>),
+}
+
+/// An example that is a row.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RowExample {
+    /// Raw inputs.
+    pub inputs: Vec<f64>,
+    /// What the network should answer.
+    pub targets: Vec<f64>,
+    /// Weight of the row's loss.
+    pub weight: f32,
+}
+
+/// A fragment of a pixel that is an example.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FragmentExample {
+    /// The fragment's weight with the least of the unknown in front.
+    pub weight: f64,
+    /// Absorbance that the network says a fraction of, and raw inputs; none where the weight is known.
+    pub unknown: Option<(f64, Vec<f64>)>,
+}
+
+/// The transmittances of fragments whose unknown a network says a fraction of.
+pub(super) fn fraction_transmittances<U: Unknown>(
+    known: &[KnownFragment<U>],
+    features: &[&Feature<U>],
+    network: Forward<'_>,
+) -> Vec<f64> {
+    let answer = |unknown: &U| network(&values(features, unknown));
+    known.iter().map(|f| f.weight(answer)).collect()
+}
+
+/// The example of a pixel of such fragments.
+pub(super) fn fraction_examples<U: Unknown>(
+    known: &[KnownFragment<U>],
+    features: &[&Feature<U>],
+) -> Examples {
+    let unknown = |unknown: &U| {
+        let [low, high] = unknown.bounds();
+        (
+            unknown.absorbance() * (high - low),
+            values(features, unknown),
+        )
+    };
+    let example = |f: &KnownFragment<U>| FragmentExample {
+        weight: f.weight(|_| 0.0),
+        unknown: f.unknown.as_ref().map(unknown),
+    };
+    Examples::Pixel(known.iter().map(example).collect())
+}

@@ -1,0 +1,234 @@
+//! `deep-small`, `deep-medium`, `deep-large`: what lies between the known ends of a fragment's slab. Whole pixels are examples. All
+//! features are free of scale and unit.
+
+use super::{feature::*, network_inputs::*, surroundings::*};
+use peelnet_core::{
+    fragment::Fragment,
+    methods::{
+        known::KnownFragment,
+        points,
+        slabs::{self, Between, Design, Layout, Slabs},
+    },
+};
+
+/// Keeps a share of two absorbances that are both 0 finite.
+const FLOOR: f64 = 1e-6;
+
+const OF_DEPTH: &str = "of the depth between the slab's ends";
+
+const OF_ABSORBANCE: &str = "of the absorbance between the slab's ends";
+
+/// How much lies between a slab's ends, where the fragment lies, what is known of the share in front, how far apart the ends are, and how
+/// the absorbances compare.
+pub static NINE: [&Feature<Between>; 9] = [
+    &Feature::new(
+        "root_absorbance",
+        "root of the absorbance between the slab's ends",
+        "sqrt(between.absorbance)",
+        |between| between.absorbance.sqrt(),
+    ),
+    &Feature::new("depth_fraction", OF_DEPTH, "between.place", |b| b.place),
+    &Feature::new("mean_fraction", OF_DEPTH, "between.mean", |b| b.mean),
+    &Feature::new("share_low", OF_ABSORBANCE, "between.low", |b| b.bounds[0]),
+    &Feature::new("share_high", OF_ABSORBANCE, "between.high", |b| b.bounds[1]),
+    &Feature::new(
+        "root_own",
+        "root of the fragment's absorbance",
+        "sqrt(between.own)",
+        |between| between.own.sqrt(),
+    ),
+    &Feature::new(
+        "half_extent",
+        "half of the depth between the slab's ends, in slabs",
+        "between.extent",
+        |between| between.extent,
+    ),
+    &Feature::new(
+        "of_own",
+        "absorbance between the ends, of that and the fragment's",
+        "between.absorbance / (between.absorbance + between.own + 1e-6)",
+        |between| between.absorbance / (between.absorbance + between.own + FLOOR),
+    ),
+    &Feature::new(
+        "of_nearest",
+        "absorbance between the ends, of that and the nearer end's",
+        "between.absorbance / (between.absorbance + between.nearest + 1e-6)",
+        |between| between.absorbance / (between.absorbance + between.nearest + FLOOR),
+    ),
+];
+
+/// The first five of them.
+pub static FIVE: [&Feature<Between>; 5] = [NINE[0], NINE[1], NINE[2], NINE[3], NINE[4]];
+
+/// What lies between the ends of a slab. The first feature must be the root of its absorbance, the fourth and fifth the bounds of the
+/// share in front.
+#[derive(Debug)]
+pub struct SlabInputs {
+    /// What is kept of a pixel.
+    pub design: Design,
+    /// The features, in order.
+    pub features: &'static [&'static Feature<Between>],
+}
+
+impl SlabInputs {
+    /// # Panics
+    /// For a design that has no shaders.
+    fn layout(&self) -> Layout {
+        let layout = self.design.layout();
+        layout.expect("recipes that are exported keep what a layout holds")
+    }
+
+    fn known(&self, pixel: &Observed<'_>) -> Vec<KnownFragment<Between>> {
+        slabs::known_fragments(pixel.fragments, &pixel.warp, self.design, pixel.precision)
+    }
+}
+
+impl NetworkInputs for SlabInputs {
+    fn features(&self) -> Vec<&'static About> {
+        about(self.features)
+    }
+
+    fn surroundings(&self) -> &'static Surroundings {
+        slab_surroundings(self.layout())
+    }
+
+    fn transmittances(&self, pixel: &Observed<'_>, network: Forward<'_>) -> Vec<f64> {
+        fraction_transmittances(&self.known(pixel), self.features, network)
+    }
+
+    fn examples(&self, pixel: &PeeledPixel<'_>) -> Examples {
+        fraction_examples(&self.known(&pixel.observed), self.features)
+    }
+
+    fn known_apart(&self) -> bool {
+        self.design.apart
+    }
+
+    /// The same slabs with the middle of the bounds.
+    fn baseline(&self, pixel: &PeeledPixel<'_>) -> [f64; 3] {
+        let (observed, design) = (&pixel.observed, self.design);
+        let fragments = observed.fragments.iter().zip(pixel.colors);
+        let fragments: Vec<_> = fragments
+            .map(|(&(depth, alpha), &color)| Fragment::new(depth, alpha, color))
+            .collect();
+        slabs::composite(&fragments, [0.0; 3], &observed.warp, design, slabs::middle).map(f64::from)
+    }
+
+    fn target_values(&self, pixel: &Observed<'_>) -> Vec<(&'static str, Vec<f32>)> {
+        let points = points(pixel.fragments, &pixel.warp);
+        let slabs = Slabs::of(&points, self.design, pixel.precision);
+        let [mut a, mut firsts, mut near, mut far] = [const { Vec::new() }; 4];
+        for slab in slabs.stored() {
+            for (values, value) in [&mut a, &mut firsts, &mut near, &mut far]
+                .into_iter()
+                .zip(slab)
+            {
+                values.push(value as f32);
+            }
+        }
+        let range = slabs.range().stored().map(|x| x as f32).to_vec();
+        let mut targets = vec![("range", range)];
+        match self.layout() {
+            Layout::Small => {
+                a.push(firsts.remove(0));
+                near.push(far[0]);
+                targets.extend([("absorbances", a), ("nearest", near), ("firsts", firsts)]);
+            }
+            Layout::Medium => {
+                for (values, first) in [&mut a, &mut near, &mut far].into_iter().zip(firsts) {
+                    values.push(first);
+                }
+                targets.extend([("absorbances", a), ("nearest", near), ("farthest", far)]);
+            }
+            Layout::Large => targets.extend([
+                ("absorbances", a),
+                ("nearest", near),
+                ("farthest", far),
+                ("firsts", firsts),
+            ]),
+        }
+        targets
+    }
+}
+
+/// What surrounds a network, or any guess between the ends of slabs, in a layout.
+pub const fn slab_surroundings(layout: Layout) -> &'static Surroundings {
+    match layout {
+        Layout::Small => &SMALL,
+        Layout::Medium => &MEDIUM,
+        Layout::Large => &LARGE,
+    }
+}
+
+const fn modules(statistics: &'static str) -> [&'static str; 7] {
+    [
+        "learned::zeta",
+        "learned::absorbance",
+        "learned::levels",
+        "learned::slabs",
+        statistics,
+        "learned::resolve",
+        "learned::composite",
+    ]
+}
+
+static SMALL: Surroundings = Surroundings {
+    parameters: "between: PeelnetBetween",
+    modules: &modules("learned::slabs_small"),
+    before: ZETA,
+    passes: &passes(
+        &[ABSORBANCES, NEAREST, sum("firsts", "rg16float", "s.firsts")],
+        &["range", "absorbances", "nearest", "firsts"],
+        "peelnet_fragment(alpha, zeta, range, absorbances, nearest, firsts).x",
+    ),
+    resolve: "peelnet_resolve(sums, absorbances.x + absorbances.y + absorbances.z, background)",
+};
+
+static MEDIUM: Surroundings = Surroundings {
+    modules: &modules("learned::slabs_medium"),
+    passes: &passes(
+        &[
+            ABSORBANCES,
+            most_and_sum("nearest", "s.nearest"),
+            most_and_sum("farthest", "s.farthest"),
+        ],
+        &["range", "absorbances", "nearest", "farthest"],
+        "peelnet_fragment(alpha, zeta, range, absorbances, nearest, farthest).x",
+    ),
+    ..SMALL
+};
+
+static LARGE: Surroundings = Surroundings {
+    modules: &modules("learned::slabs_large"),
+    passes: &passes(
+        &[
+            ABSORBANCES,
+            NEAREST,
+            most("farthest", HALF, LEAST, "s.farthest"),
+            sum("firsts", HALF, "s.firsts"),
+        ],
+        &["range", "absorbances", "nearest", "farthest", "firsts"],
+        "peelnet_fragment(alpha, zeta, range, absorbances, nearest, farthest, firsts).x",
+    ),
+    resolve: "peelnet_resolve(sums, absorbances.x + absorbances.y + absorbances.z + absorbances.w, background)",
+    ..SMALL
+};
+
+const fn passes(
+    targets: &'static [Target],
+    reads: &'static [&'static str],
+    call: &'static str,
+) -> [Pass; 3] {
+    const RANGE: &[Target] = &[most("range", "rg8unorm", 0.0, "r")];
+    let range = value("r", ValueKind::Pair, "peelnet_pixel_range(zeta)");
+    let in_range = statistics("peelnet_statistics(alpha, zeta, range)");
+    [
+        pass("range", &[], range, RANGE),
+        pass("statistics", &["range"], in_range, targets),
+        pass("weights", reads, weight(call), SUMS),
+    ]
+}
+
+const ABSORBANCES: Target = sum("absorbances", HALF, "s.absorbances");
+
+const NEAREST: Target = most("nearest", HALF, LEAST, "s.nearest");
