@@ -27,7 +27,7 @@ pub fn shipped(recipe: Recipe) -> Model {
 
 /// The network that ships for a method, with its exported text; `None` for a method without a network.
 pub fn network_of(method: &MethodSpec) -> Option<(LearnedWeight, Model)> {
-    let recipe = Recipe::of_method(method.name())?;
+    let recipe = Recipe::for_method(method.name())?;
     let model = shipped(recipe);
     let wgsl = peelnet_export::wgsl(&model);
     let wgsl = wgsl.unwrap_or_else(|e| panic!("{method}: {e}"));

@@ -83,7 +83,7 @@ fn descriptions_lead_to_the_colour_of_the_self_test() {
     let mut drawn = 0;
     for recipe in Recipe::ALL {
         let model = shipped(recipe);
-        let Some(pixel) = SelfTest::of(&model).pixel else {
+        let Some(pixel) = SelfTest::new(&model).pixel else {
             continue;
         };
         let text = peelnet_export::wgsl(&model).unwrap();
@@ -191,7 +191,7 @@ fn glsl_texts_answer_what_the_network_answers() {
     let mut random = Random::new(61, &[]);
     for recipe in Recipe::ALL {
         let model = shipped(recipe);
-        let points = SelfTest::of(&model).network;
+        let points = SelfTest::new(&model).network;
         assert!(!points.is_empty(), "{recipe}");
         let mut rows: Vec<Vec<f32>> = points.into_iter().map(|p| p.inputs).collect();
         for _ in 0..500 {

@@ -202,7 +202,7 @@ fn features_are_the_same_in_rust_and_wgsl() {
         &THESIS,
         pixels
             .iter()
-            .flat_map(|pixel| pixel.iter().map(|f| deep::Row::of(f, pixel))),
+            .flat_map(|pixel| pixel.iter().map(|f| deep::Row::new(f, pixel))),
         |row| {
             vec![
                 row.linear_depth.into(),
@@ -228,7 +228,7 @@ fn features_are_the_same_in_rust_and_wgsl() {
         &DFAOIT,
         pixels
             .iter()
-            .map(|pixel| dfaoit::Layers::of(pixel.iter().map(|f| (f.alpha, f.color)))),
+            .map(|pixel| dfaoit::Layers::from_fragments(pixel.iter().map(|f| (f.alpha, f.color)))),
         |l| {
             let numbers = l.average.iter().chain([&l.average_alpha]);
             numbers.chain(&l.sum).chain(&l.front).copied().collect()

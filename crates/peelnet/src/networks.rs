@@ -102,7 +102,7 @@ pub fn model_for(method: &MethodSpec, given: Option<Model>) -> Result<Option<Mod
             ))),
         };
     }
-    let recipe = Recipe::of_method(name)
+    let recipe = Recipe::for_method(name)
         .ok_or_else(|| Failure::failed(format!("method {name} belongs to no recipe")))?;
     let model = given.map_or_else(|| Model::shipped(recipe), Ok)?;
     if model.meta.recipe != recipe {

@@ -43,7 +43,7 @@ pub(crate) fn header(model: &Model, options: &Options) -> String {
     }
     lines.extend(provenance(model));
     lines.push(String::new());
-    lines.extend(SelfTest::of(model).lines(function_name(model.meta.output)));
+    lines.extend(SelfTest::new(model).lines(function_name(model.meta.output)));
     lines.push(String::new());
     lines.extend(Description::new(model.meta.recipe).lines(language));
     let mut text: String = lines

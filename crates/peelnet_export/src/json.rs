@@ -67,7 +67,7 @@ pub fn json(model: &Model) -> Result<String, ExportError> {
         held_out: &meta.held_out,
         description: Description::new(meta.recipe),
         multisampling: "by-sample",
-        self_test: SelfTest::of(model),
+        self_test: SelfTest::new(model),
     };
     let text = serde_json::to_string_pretty(&file);
     let refused =

@@ -70,7 +70,7 @@ pub struct Drawn {
 
 impl SelfTest {
     /// Of a model.
-    pub fn of(model: &Model) -> Self {
+    pub fn new(model: &Model) -> Self {
         let mut random = Random::new(2, &[]);
         let drawn = (0..DRAWS).map(|_| {
             let inputs = model.meta.inputs.iter();

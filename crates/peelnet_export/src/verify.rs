@@ -165,7 +165,7 @@ fn declarations(wgsl: &str) -> Result<Vec<String>, ExportError> {
 
 fn samples(model: &Model) -> Vec<Vec<f32>> {
     let count = model.meta.inputs.len();
-    let points = SelfTest::of(model).network.into_iter();
+    let points = SelfTest::new(model).network.into_iter();
     let mut all: Vec<Vec<f32>> = points.map(|point| point.inputs).collect();
     let between = |t: f32| -> Vec<f32> {
         let inputs = model.meta.inputs.iter();
@@ -352,7 +352,7 @@ mod tests {
     #[test]
     fn sixteen_bits_are_written_where_they_hold() {
         let gpu = gpu();
-        let of = |model: &Model, language| {
+        let export = |model: &Model, language| {
             let options = Options {
                 language,
                 precision: Precision::F16,
@@ -365,13 +365,13 @@ mod tests {
             (Language::Hlsl, "half"),
             (Language::Msl, "half"),
         ] {
-            let text = of(&model, language).expect("exports");
+            let text = export(&model, language).expect("exports");
             assert!(text.contains(word), "{text}");
         }
         for language in [Language::Glsl, Language::GlslEs] {
-            assert!(refusal(of(&model, language)).contains("no portable 16-bit"));
+            assert!(refusal(export(&model, language)).contains("no portable 16-bit"));
         }
-        let text = of(&model, Language::Wgsl).expect("exports");
+        let text = export(&model, Language::Wgsl).expect("exports");
         if !gpu.has(wgpu::Features::SHADER_F16) {
             assert!(refusal(verify(&gpu, &model, &text)).contains("shader-f16"));
             return;
@@ -385,7 +385,7 @@ mod tests {
         let most = apart.fold(0.0, f32::max);
         assert!(most > EXPORT_F32 as f32, "{most}: not in 16 bits");
         let shipped = Model::shipped(Recipe::MEDIUM).expect("ships");
-        let text = of(&shipped, Language::Wgsl).expect("exports");
+        let text = export(&shipped, Language::Wgsl).expect("exports");
         assert!(refusal(verify(&gpu, &shipped, &text)).contains("differs from the model"));
     }
 }

@@ -284,7 +284,7 @@ impl Recipe {
     }
 
     /// The recipe of a rendering method, if it draws with a network.
-    pub fn of_method(method: &str) -> Option<Self> {
+    pub fn for_method(method: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|r| r.method == method)
     }
 
@@ -360,7 +360,7 @@ mod tests {
     fn declarations_hold_together() {
         for recipe in Recipe::ALL {
             assert_eq!(recipe.name.parse(), Ok(recipe));
-            assert_eq!(Recipe::of_method(recipe.method), Some(recipe));
+            assert_eq!(Recipe::for_method(recipe.method), Some(recipe));
             let names = recipe.input_names();
             for (i, name) in names.iter().enumerate() {
                 assert!(!names[..i].contains(name), "{recipe} reads {name} twice");

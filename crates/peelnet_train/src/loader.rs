@@ -27,7 +27,7 @@ impl TrainingData {
     pub fn from_datasets(config: &Config, datasets: &[Dataset]) -> Result<Self, TrainError> {
         let plan = Plan::new(config, datasets)?;
         let mut sample = Sample::new(config.seed, config.max_rows, plan.dataset.rows);
-        let mut data = Self::of_recipe(config.recipe);
+        let mut data = Self::for_recipe(config.recipe);
         let mut ends = vec![0; plan.views.len()];
         let factors = gather(
             config.recipe,
@@ -47,7 +47,7 @@ impl TrainingData {
             }
         }
         data.used = Some(UsedRows {
-            used: sample.kept()?,
+            used: sample.rows_kept()?,
             of: plan.dataset.rows,
         });
         // A split that leaves a subset without examples is dropped: a handful of pixels may all fall on one side. Then the trainer draws
@@ -78,7 +78,7 @@ impl TrainingData {
         mut on_rows: impl FnMut(u64, u64),
     ) -> Result<Self, TrainError> {
         let plan = Plan::new(config, datasets)?;
-        let mut data = Self::of_recipe(config.recipe);
+        let mut data = Self::for_recipe(config.recipe);
         let mut scratch = Scratch::create(folder, data.inputs.len())?;
         let mut read = 0;
         scratch.weights = gather(

@@ -45,7 +45,7 @@ impl Shape {
 
     /// Initial parameters: uniform in ±1/√inputs, weights and biases, as PyTorch's `nn.Linear` starts.
     pub(crate) fn initial(&self, seed: u64) -> Vec<f32> {
-        let mut random = Stream::Weights.of(seed);
+        let mut random = Stream::Weights.random(seed);
         self.layers()
             .flat_map(|(inputs, outputs)| {
                 let bound = 1.0 / (inputs as f32).sqrt();
@@ -167,7 +167,7 @@ mod tests {
     }
 
     fn random_inputs(rows: usize, seed: u64) -> Vec<f32> {
-        let mut random = Stream::Split.of(seed);
+        let mut random = Stream::Split.random(seed);
         (0..3 * rows).map(|_| random.between(-3.0, 3.0)).collect()
     }
 

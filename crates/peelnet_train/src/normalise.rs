@@ -75,7 +75,7 @@ impl Normalisation {
     /// not a normal number. Rounding the mean to 32 bits does no harm even where neighbouring values differ in the last
     /// bit: it errs by no more than one deviation. A constant column trains as zero, and the model has zero weights for it: the network never saw it vary, so it must not react when
     /// it does. Its scale is 1, because a model file wants an invertible one.
-    pub(crate) fn of(moments: &Moments) -> Self {
+    pub(crate) fn from_moments(moments: &Moments) -> Self {
         let Moments { min, max, .. } = *moments;
         let deviation = (moments.squares / moments.count.max(1) as f64).sqrt();
         let scale = (1.0 / deviation) as f32;
@@ -107,7 +107,7 @@ mod tests {
     /// The normalisation of all values, and what it makes of values.
     fn normalised(values: &[f32], raw: &[f32]) -> (Normalisation, Vec<f32>) {
         let all = |values: &[f32]| (0..values.len() as u32).collect::<Vec<_>>();
-        let n = Normalisation::of(&Moments::over(values, &all(values)));
+        let n = Normalisation::from_moments(&Moments::over(values, &all(values)));
         let mut to = Vec::new();
         n.append(raw, &all(raw), &mut to);
         (n, to)

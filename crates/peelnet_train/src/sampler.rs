@@ -38,7 +38,7 @@ pub(crate) enum Stream {
 }
 
 impl Stream {
-    pub(crate) fn of(self, seed: u64) -> Random {
+    pub(crate) fn random(self, seed: u64) -> Random {
         match self {
             Self::Weights => Random::new(seed, &[1, 0]),
             Self::Split => Random::new(seed, &[2, 0]),
@@ -50,7 +50,7 @@ impl Stream {
     }
 
     fn permuted<T: Copy>(self, seed: u64, items: &[T]) -> Vec<T> {
-        let order = self.of(seed).permutation(items.len() as u32);
+        let order = self.random(seed).permutation(items.len() as u32);
         order.into_iter().map(|i| items[i as usize]).collect()
     }
 }
@@ -103,7 +103,8 @@ impl Sample {
     pub(crate) fn keep(&mut self, [x, y]: [u32; 2], rows: usize) -> bool {
         if self.fraction < 1.0 {
             let place = u64::from(x) << 32 | u64::from(y);
-            if f64::from(Stream::Sample(self.view, place).of(self.seed).unit()) >= self.fraction {
+            if f64::from(Stream::Sample(self.view, place).random(self.seed).unit()) >= self.fraction
+            {
                 return false;
             }
             // The views so far may hold their share of the limit, rounded down, so the last ones have theirs.
@@ -120,7 +121,7 @@ impl Sample {
     ///
     /// # Errors
     /// None was, though there are some.
-    pub(crate) fn kept(&self) -> Result<u64, TrainError> {
+    pub(crate) fn rows_kept(&self) -> Result<u64, TrainError> {
         if self.kept == 0 && self.total > 0 {
             return Err(TrainError::Config {
                 setting: "max_rows",
@@ -138,7 +139,7 @@ pub(crate) fn by_subset(data: &TrainingData, config: &Config) -> [Vec<u32>; 3] {
     let drawn = || {
         let n = data.examples_held();
         let held_out = ((n as f64 * config.held_out) as usize).min(n.saturating_sub(1));
-        let order = Stream::Split.of(config.seed).permutation(n as u32);
+        let order = Stream::Split.random(config.seed).permutation(n as u32);
         let mut subsets = vec![Subset::Train; n];
         for &example in &order[..held_out] {
             subsets[example as usize] = Subset::Test;
@@ -220,7 +221,7 @@ fn windows(
     // Whole batches to learn from; for judging, something.
     let is_training = subset == Subset::Train;
     let least = if is_training { config.batch } else { 1 };
-    let mut buffer = TrainingData::of_recipe(config.recipe);
+    let mut buffer = TrainingData::for_recipe(config.recipe);
     let mut bytes = Vec::new();
     // Examples that did not fill a batch: their words and their number.
     let (mut left, mut left_examples) = (Vec::new(), 0);
@@ -276,7 +277,7 @@ mod tests {
     /// Frozen, because released weights can only be made again if this never changes.
     #[test]
     fn the_stream_never_changes() {
-        let order = |epoch| Stream::Order(epoch).of(42).permutation(8);
+        let order = |epoch| Stream::Order(epoch).random(42).permutation(8);
         assert_eq!(order(3), [1, 2, 7, 4, 6, 3, 0, 5]);
         assert_ne!(order(1), order(2));
     }
@@ -284,14 +285,14 @@ mod tests {
     #[test]
     fn a_third_is_held_out_and_no_row_is_lost() {
         let config = Config::for_recipe(Recipe::THESIS);
-        let of = |n: usize| TrainingData::new("test", Vec::new(), vec![vec![0.0; n]]);
-        let [train, validation, test] = by_subset(&of(3000), &config);
+        let rows = |n: usize| TrainingData::new("test", Vec::new(), vec![vec![0.0; n]]);
+        let [train, validation, test] = by_subset(&rows(3000), &config);
         let counts = [train.len(), validation.len(), test.len()];
         assert_eq!(counts, [2000, 0, 1000]);
         assert!(train.is_sorted() && test.is_sorted());
         let all: BTreeSet<u32> = train.into_iter().chain(test).collect();
         assert!(all.into_iter().eq(0..3000));
-        let mut given = of(4);
+        let mut given = rows(4);
         let [train, validation, test] = SUBSETS;
         given.subsets = Some(vec![train, test, validation, train]);
         assert_eq!(by_subset(&given, &config), [vec![0, 3], vec![2], vec![1]]);
@@ -326,13 +327,13 @@ mod tests {
                 kept as f64 >= 0.8 * most.min(total) as f64,
                 "{kept} of {most}"
             );
-            assert_eq!(sample.kept().ok(), Some(kept));
+            assert_eq!(sample.rows_kept().ok(), Some(kept));
         }
     }
 
     /// Pixels of 1 to 12 rows with their number in every column, a third of them for testing.
     fn view(recipe: Recipe, first: u32, pixels: u32, random: &mut Random) -> TrainingData {
-        let mut data = TrainingData::of_recipe(recipe);
+        let mut data = TrainingData::for_recipe(recipe);
         for id in first..first + pixels {
             let first_row = data.rows_held() as u32;
             let mut rows = 1;

@@ -102,7 +102,7 @@ impl TrainingData {
     }
 
     /// No rows, with the columns of a recipe.
-    pub(crate) fn of_recipe(recipe: Recipe) -> Self {
+    pub(crate) fn for_recipe(recipe: Recipe) -> Self {
         let weighed = !recipe.inputs.are_columns();
         Self {
             inputs: vec![Vec::new(); recipe.inputs.features().len()],
@@ -301,10 +301,14 @@ impl TrainingData {
     /// Of each input, over the examples that train.
     pub(crate) fn normalisation(&self, train: &[u32]) -> Vec<Normalisation> {
         if let Some(scratch) = &self.scratch {
-            return scratch.moments.iter().map(Normalisation::of).collect();
+            return scratch
+                .moments
+                .iter()
+                .map(Normalisation::from_moments)
+                .collect();
         }
         let rows: Vec<u32> = train.iter().flat_map(|&e| self.rows_of(e)).collect();
-        let over = |values: &Vec<f32>| Normalisation::of(&Moments::over(values, &rows));
+        let over = |values: &Vec<f32>| Normalisation::from_moments(&Moments::over(values, &rows));
         self.inputs.iter().map(over).collect()
     }
 }

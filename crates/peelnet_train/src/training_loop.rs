@@ -371,7 +371,7 @@ impl Run<'_> {
             max: n.max,
         });
         let mut mlp = self.shape.to_mlp(&download(parameters));
-        // See `Normalisation::of`: an input that never varied must not matter.
+        // See `Normalisation::from_moments`: an input that never varied must not matter.
         let first = &mut mlp.layers[0];
         for row in first.weights.chunks_exact_mut(first.inputs) {
             for (weight, n) in row.iter_mut().zip(&self.normalisation) {

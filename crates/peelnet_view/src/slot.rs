@@ -91,7 +91,7 @@ impl Slot {
     pub fn model(&self) -> Option<Model> {
         match self.own_network() {
             Some(network) => Some(network.model.clone()),
-            None => Model::shipped(Recipe::of_method(self.spec.name())?).ok(),
+            None => Model::shipped(Recipe::for_method(self.spec.name())?).ok(),
         }
     }
 

@@ -398,7 +398,7 @@ fn a_network_is_read_again_when_its_file_changes() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("m.safetensors");
     let write = |method: &str| {
-        let recipe = Recipe::of_method(method).unwrap();
+        let recipe = Recipe::for_method(method).unwrap();
         Model::shipped(recipe).unwrap().save(&path).unwrap();
     };
     let loaded = |app: &App| app.first.own_network().map(|n| n.model.meta.recipe.method);

@@ -74,7 +74,7 @@ pub(super) fn of_boxes(view: &View, scene: &Scene, camera: &Camera, size: [u32; 
         if zetas.is_empty() {
             Range::WHOLE
         } else {
-            Range::of(zetas)
+            Range::from_depths(zetas)
         }
     };
     let stacks = view.stacks.par_iter();
@@ -106,7 +106,9 @@ pub(super) fn of_last(view: &View, before: &View, width: usize, height: usize) -
     let ends = spread(&ends, width, 1, &|i| i % width);
     let ends = spread(&ends, height, width, &|i| i / width);
     let of_place = |place: usize| match ends[place] {
-        [low, high] if low <= high => Range::of([low, high].map(|z| view.warp.apply(z.into()))),
+        [low, high] if low <= high => {
+            Range::from_depths([low, high].map(|z| view.warp.apply(z.into())))
+        }
         _ => Range::WHOLE,
     };
     let stacks = view.stacks.iter();
@@ -186,7 +188,7 @@ mod tests {
         let view = View::new("s", warp, 9, [(4, one(3.0)), (0, one(3.0))]);
         let found = of_boxes(&view, &scene, &camera, [3, 3]);
         let margin = f64::from(2.0 * peelnet_scene::BOX_MARGIN);
-        let expected = Range::of([2.0 - margin, 4.0 + margin].map(|z: f64| warp.apply(z)));
+        let expected = Range::from_depths([2.0 - margin, 4.0 + margin].map(|z: f64| warp.apply(z)));
         assert_eq!(found, [expected, Range::WHOLE]);
     }
 
@@ -197,7 +199,7 @@ mod tests {
         let before = View::new("s", warp, 64, [(0, one(3.0)), (8 + 1, one(5.0))]);
         let lists = [2, 3, 4, 16].map(|place| (place, one(3.0)));
         let view = View::new("s", warp, 64, lists);
-        let of = |depths: &[f64]| Range::of(depths.iter().map(|&z| warp.apply(z)));
+        let of = |depths: &[f64]| Range::from_depths(depths.iter().map(|&z| warp.apply(z)));
         let found = of_last(&view, &before, 8, 8);
         assert_eq!(
             found,

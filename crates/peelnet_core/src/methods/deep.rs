@@ -13,7 +13,7 @@ pub struct Row {
 }
 
 impl Row {
-    pub fn of(fragment: &Fragment, pixel: &[Fragment]) -> Self {
+    pub fn new(fragment: &Fragment, pixel: &[Fragment]) -> Self {
         Self {
             linear_depth: fragment.depth,
             alpha_sum: pixel.iter().map(|f| f.alpha).sum(),

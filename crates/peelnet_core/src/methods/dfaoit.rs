@@ -27,7 +27,7 @@ pub struct Layers {
 
 impl Layers {
     /// Of a pixel's fragments, given as (α, radiance), nearest first.
-    pub fn of(fragments: impl IntoIterator<Item = (f32, [f32; 3])>) -> Self {
+    pub fn from_fragments(fragments: impl IntoIterator<Item = (f32, [f32; 3])>) -> Self {
         let mut layers = Self::default();
         let (mut through, mut behind) = (1.0, 0.0);
         for (i, (alpha, color)) in fragments.into_iter().enumerate() {
@@ -66,7 +66,9 @@ pub fn composite(
     if sorted.len() <= FRONT || transmittance == 1.0 {
         return over::composite(&sorted, background);
     }
-    let color = network(&Layers::of(sorted.iter().map(|f| (f.alpha, f.color))));
+    let color = network(&Layers::from_fragments(
+        sorted.iter().map(|f| (f.alpha, f.color)),
+    ));
     std::array::from_fn(|k| color[k] + transmittance * background[k])
 }
 

@@ -27,8 +27,8 @@ pub fn point(alpha: f32, zeta: f64) -> Point {
 
 /// Of fragments that are given as (linear depth, α).
 pub fn points(fragments: &[(f32, f32)], warp: &DepthWarp) -> Vec<Point> {
-    let of = |&(depth, alpha): &(f32, f32)| point(alpha, warp.apply(depth.into()));
-    fragments.iter().map(of).collect()
+    let to_point = |&(depth, alpha): &(f32, f32)| point(alpha, warp.apply(depth.into()));
+    fragments.iter().map(to_point).collect()
 }
 
 /// Eq 6's composite with an estimate of the transmittance in front of each fragment as its weight.

@@ -113,11 +113,11 @@ pub fn transmittances(fragments: &[(f32, f32)], warp: &DepthWarp, settings: &Set
         all.add(b, zeta);
     }
     let in_front = points.iter().map(|&(b, zeta, _)| {
-        let mut seen = all;
+        let mut others = all;
         if settings.own_share_out {
-            seen.add(-b, zeta);
+            others.add(-b, zeta);
         }
-        seen.transmittance(zeta, settings)
+        others.transmittance(zeta, settings)
     });
     in_front.collect()
 }

@@ -186,7 +186,7 @@ impl Range {
     };
 
     /// Of a pixel whose fragments have these warped depths.
-    pub fn of(zetas: impl IntoIterator<Item = f64>) -> Self {
+    pub fn from_depths(zetas: impl IntoIterator<Item = f64>) -> Self {
         let none = (RANGE_TOP, 0.0f64);
         let (low, high) = zetas.into_iter().fold(none, |(low, high), zeta| {
             let level = level(zeta);
@@ -257,11 +257,11 @@ pub struct Slabs {
 }
 
 impl Slabs {
-    pub fn of(fragments: &[Point], design: Design, precision: SumPrecision) -> Self {
+    pub fn gather(fragments: &[Point], design: Design, precision: SumPrecision) -> Self {
         let mut all = Self {
             design,
             range: match design.extent {
-                Extent::Pixel => Range::of(fragments.iter().map(|f| f.1)),
+                Extent::Pixel => Range::from_depths(fragments.iter().map(|f| f.1)),
                 Extent::Frame => Range::WHOLE,
                 Extent::Given(range) => range,
             },
@@ -412,7 +412,7 @@ pub fn known_fragments(
     precision: SumPrecision,
 ) -> Vec<KnownFragment<Between>> {
     let points = points(fragments, warp);
-    let slabs = Slabs::of(&points, design, precision);
+    let slabs = Slabs::gather(&points, design, precision);
     let known = |&(b, zeta, counts): &Point| slabs.known(b, zeta, counts);
     points.iter().map(known).collect()
 }
@@ -446,7 +446,7 @@ pub fn composite_on(
 ) -> [f32; 3] {
     let all = fragments.iter();
     let points: Vec<Point> = all.map(|f| point(f.alpha, zeta(f.depth))).collect();
-    let slabs = Slabs::of(&points, design, precision);
+    let slabs = Slabs::gather(&points, design, precision);
     let weights = points.iter().map(|&(b, zeta, counts)| {
         let known = slabs.known(b, zeta, counts);
         (known.weight(&guess), known.unknown.is_none())

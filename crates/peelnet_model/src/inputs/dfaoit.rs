@@ -59,7 +59,7 @@ impl NetworkInputs for DfaoitInputs {
             }
         }
         let alphas = fragments.iter().map(|&(_, alpha)| alpha);
-        let layers = Layers::of(alphas.zip(pixel.colors.iter().copied()));
+        let layers = Layers::from_fragments(alphas.zip(pixel.colors.iter().copied()));
         Examples::Rows(vec![RowExample {
             inputs: values(self.features, &layers),
             targets: exact.map(|c| c.min(1.0)).to_vec(),

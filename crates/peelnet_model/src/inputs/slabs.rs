@@ -116,7 +116,7 @@ impl NetworkInputs for SlabInputs {
 
     fn target_values(&self, pixel: &Observed<'_>) -> Vec<(&'static str, Vec<f32>)> {
         let points = points(pixel.fragments, &pixel.warp);
-        let slabs = Slabs::of(&points, self.design, pixel.precision);
+        let slabs = Slabs::gather(&points, self.design, pixel.precision);
         let [mut a, mut firsts, mut near, mut far] = [const { Vec::new() }; 4];
         for slab in slabs.stored() {
             for (values, value) in [&mut a, &mut firsts, &mut near, &mut far]

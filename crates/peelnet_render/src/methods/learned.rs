@@ -6,7 +6,7 @@ use peelnet_model::{Model, Recipe, inputs::Observed};
 impl LearnedWeight {
     /// The network that ships for a method; `None` for a method that has none.
     pub fn shipped(spec: &MethodSpec) -> Option<Self> {
-        let recipe = Recipe::of_method(spec.name())?;
+        let recipe = Recipe::for_method(spec.name())?;
         let shipped = peelnet_shipped_networks::find(recipe.name)?;
         Some(Self {
             recipe,

@@ -73,13 +73,13 @@ fn a_checkpoint_of_another_dataset_or_buffer_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     let config = config(Recipe::THESIS);
     let out = folder.path().join("net.safetensors");
-    let of = |name: &str, views| {
+    let write_dataset = |name: &str, views| {
         let dataset = write(&folder.path().join(name), views);
         streamed(&config, &dataset, folder.path())
     };
-    let data = of("a", 2);
+    let data = write_dataset("a", 2);
     run(&config, &data, &out).unwrap();
-    let error = train(&config, &of("b", 3), &resuming(&out), |_| {}).unwrap_err();
+    let error = train(&config, &write_dataset("b", 3), &resuming(&out), |_| {}).unwrap_err();
     assert!(error.to_string().contains("other rows"), "{error}");
     let mut other = config.clone();
     other.buffer_rows = None;

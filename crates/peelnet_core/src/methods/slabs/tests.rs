@@ -77,7 +77,7 @@ fn depths_that_are_rounded_otherwise_are_known_still() {
         let list = at(&places, 0.98, &mut random);
         let list = points_of(&list);
         let points = points(&list, &warp());
-        let slabs = Slabs::of(&points, design, SumPrecision::Exact);
+        let slabs = Slabs::gather(&points, design, SumPrecision::Exact);
         for &(b, zeta, counts) in &points {
             let was = slabs.known(b, zeta, counts);
             let [own, one, other] = [zeta, zeta - MOVED, zeta + MOVED].map(|z| slabs.place(b, z));

@@ -17,7 +17,7 @@ pub(super) const METHOD: Expectations = Expectations {
     reference: Some(|s, p| {
         let model = p.model?;
         let weight = |f: &Fragment| {
-            let row = deep::Row::of(f, p.fragments);
+            let row = deep::Row::new(f, p.fragments);
             model.forward_raw(&[row.linear_depth, row.alpha_sum, row.fragment_count])[0]
         };
         Some(if is_printed(s) {
