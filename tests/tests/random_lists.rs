@@ -7,17 +7,17 @@ use peelnet_core::{
     absorbance::{DepthWarp, absorbance},
     fragment::{Fragment, transmittances},
     methods::{
-        anchored::{self, Rest},
+        anchored::{self, Residual},
         moments::{Moments, Settings},
         over,
-        slabs::{self, Between, Design},
+        slabs::{self, Design, Interior},
     },
     random::Random,
     statistics::{Statistics, SumPrecision},
     tolerance,
     weights::Weight,
 };
-use peelnet_model::inputs::{NINE, REST, values};
+use peelnet_model::inputs::{ANCHORED, NINE, values};
 use peelnet_render::{
     KnownFailure, MethodSpec, Property,
     methods::{Pixel, wavelet},
@@ -88,13 +88,13 @@ fn warp(list: &[Fragment]) -> DepthWarp {
 }
 
 /// A share that no network would predict: anything in 0 … 1.
-fn share(rest: &Rest) -> f64 {
-    let sum = values(&REST, rest).iter().sum::<f64>();
+fn share(rest: &Residual) -> f64 {
+    let sum = values(&ANCHORED, rest).iter().sum::<f64>();
     (sum * 12.9898).sin().abs()
 }
 
 /// The same between a slab's ends.
-fn guess(between: &Between) -> f64 {
+fn guess(between: &Interior) -> f64 {
     let known = values(&NINE, between);
     (known.iter().sum::<f64>() * 12.9898).sin().abs()
 }
@@ -247,13 +247,13 @@ proptest! {
         };
         for precision in [SumPrecision::Exact, SumPrecision::Half] {
             for f in anchored::known_fragments(&points, &warp, precision) {
-                let features = f.unknown.map(|rest| values(&REST, &rest));
+                let features = f.unknown.map(|rest| values(&ANCHORED, &rest));
                 prop_assert!(features.iter().flatten().all(|x| x.is_finite()), "{:?}", f);
                 let mut shares = features.iter().flat_map(|features| &features[3..]);
                 prop_assert!(shares.all(|x| (-1e-6..=1.0 + 1e-6).contains(x)), "{:?}", f);
                 prop_assert!(is_weight(&|share| f.weight(|_| share)), "{:?}", f);
             }
-            // Between the known ends of slabs, whose bounds hold the share.
+            // Interior the known ends of slabs, whose bounds hold the share.
             for design in [Design::SMALL, Design::MEDIUM, Design::LARGE] {
                 for f in slabs::known_fragments(&points, &warp, design, precision) {
                     let inputs = f.unknown.map(|between| values(&NINE, &between));
@@ -272,8 +272,8 @@ proptest! {
         let x = bits.map(f32::from_bits).map(|x| f64::from(if x.is_finite() { x } else { 1e30 }));
         let s = Statistics { moments: [x[0].abs(), x[1], x[2], x[3], x[4]], nearest: x[5].clamp(-1.0, 1.0), farthest: x[6].clamp(-1.0, 1.0) };
         let rest = s.without(&[(x[7].abs().min(16.0), zeta)]);
-        let seen = Rest::new(&s, &rest, zeta);
-        prop_assert!(values(&REST, &seen).iter().all(|x| x.is_finite()), "{:?} {:?}", s, rest);
+        let seen = Residual::new(&s, &rest, zeta);
+        prop_assert!(values(&ANCHORED, &seen).iter().all(|x| x.is_finite()), "{:?} {:?}", s, rest);
     }
 
     /// Published weights of any depth and opacity.

@@ -11,7 +11,7 @@ use peelnet_core::{
 };
 use peelnet_model::{
     Model, Recipe,
-    inputs::{DFAOIT, Feature, NINE, NMT, REST, THESIS, values},
+    inputs::{ANCHORED, DFAOIT, Feature, NINE, NMT, THESIS, values},
 };
 use peelnet_render::gpu::Gpu;
 use peelnet_tests::{HALF, gpu};
@@ -215,7 +215,9 @@ fn features_are_the_same_in_rust_and_wgsl() {
     compare_features(
         Recipe::NMT,
         &NMT,
-        lists.iter().flat_map(|list| nmt::Seen::all(list, &warp)),
+        lists
+            .iter()
+            .flat_map(|list| nmt::FragmentMoments::all(list, &warp)),
         |seen| {
             let ([near, far], [b0, b1, b2, b3, b4]) = (seen.extent, seen.moments);
             vec![seen.zeta, -near, far, b0, seen.count as f64, b1, b2, b3, b4]
@@ -238,7 +240,7 @@ fn features_are_the_same_in_rust_and_wgsl() {
     );
     compare_features(
         Recipe::ANCHORED_SMALL,
-        &REST,
+        &ANCHORED,
         lists
             .iter()
             .flat_map(|list| anchored::known_fragments(list, &warp, exact))

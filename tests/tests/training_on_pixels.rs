@@ -3,7 +3,9 @@
 use peelnet_dataset::{Dataset, SplitBy, Summary};
 use peelnet_model::{Model, Recipe};
 use peelnet_peel::{ExtractOptions, synthetic::synthetic};
-use peelnet_train::{ALPHA, Config, LEFT, PixelLoss, REST, RunOptions, SUM, TrainingData, train};
+use peelnet_train::{
+    ALPHA, Config, LEFT, PixelLoss, RESIDUAL, RunOptions, SUM, TrainingData, train,
+};
 use std::{path::Path, sync::atomic::AtomicBool};
 
 static NEVER: AtomicBool = AtomicBool::new(false);
@@ -60,7 +62,7 @@ fn with_the_true_shares_nothing_is_scaled() {
             // Contributions cannot exceed what lies between the ends.
             for row in first as usize..end {
                 let (y, k) = (data.targets[0][row], pixels.rows[ALPHA][row]);
-                assert!(pixels.rows[REST][row] >= 0.0 && (0.0..=1.0).contains(&k) && y <= 1.0);
+                assert!(pixels.rows[RESIDUAL][row] >= 0.0 && (0.0..=1.0).contains(&k) && y <= 1.0);
             }
         }
         assert!(shared * 5 < pixels.first.len(), "{recipe}: {shared}");

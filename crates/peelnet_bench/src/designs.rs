@@ -16,7 +16,7 @@ pub use ranges::{REACH, Source};
 pub use views::{Measured, Stacked, View, peel, score};
 
 use peelnet_core::{
-    methods::slabs::{self, Between, Design},
+    methods::slabs::{self, Design, Interior},
     statistics::SumPrecision,
 };
 use peelnet_model::{Model, Recipe, inputs::Feature};
@@ -45,7 +45,7 @@ pub struct Entry {
     pub design: Design,
     /// What is cut into slabs. Where the design has no such case, the network learns from the pixel's own range.
     pub source: Source,
-    pub inputs: &'static [&'static Feature<Between>],
+    pub inputs: &'static [&'static Feature<Interior>],
     /// What is trained; its examples may be gathered with the sums apart where the design has one sum.
     pub recipe: Recipe,
     /// Decides initial weights and the order of examples.

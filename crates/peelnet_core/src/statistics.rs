@@ -47,7 +47,7 @@ pub const SAME_CODE: u32 = 1;
 /// A fragment's depth, coarsely, and its opacity in one level: MAX blending of it keeps the opacity of the fragment with
 /// the largest depth. Of fragments in one bin it keeps the most opaque one's.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct EndCode {
+pub struct ExtremeCode {
     pub bins: u32,
     /// Levels of opacity: even steps of `b/(1 + b)`, `b` absorbance, which err in transmittance `e^−b` by three quarters of a
     /// step at most, cost a division to read, and reach [`ABSORBANCE_MAX`]. The bins times the alphas are [`DEPTH_CODES`].
@@ -55,13 +55,13 @@ pub struct EndCode {
 }
 
 /// Of the nearest fragment, whose exact level is kept beside it, so that its opacity gets most of the levels.
-pub const NEAR_END: EndCode = EndCode {
+pub const NEAREST_CODE: ExtremeCode = ExtremeCode {
     bins: 240,
     alphas: 256,
 };
 
 /// Of the farthest fragment, which is recognised by this level alone.
-pub const FAR_END: EndCode = EndCode {
+pub const FARTHEST_CODE: ExtremeCode = ExtremeCode {
     bins: 1920,
     alphas: 32,
 };
@@ -69,7 +69,7 @@ pub const FAR_END: EndCode = EndCode {
 /// Makes [`ABSORBANCE_MAX`] the last level of opacity.
 const MOST_LEVEL: f64 = (ABSORBANCE_MAX + 1.0) / ABSORBANCE_MAX;
 
-impl EndCode {
+impl ExtremeCode {
     pub fn level(self, zeta: f64, absorbance: f64) -> u32 {
         self.bin(zeta) * self.alphas + self.alpha_level(absorbance)
     }
@@ -97,8 +97,8 @@ impl EndCode {
 
     /// The absorbance that a level stands for, at most [`ABSORBANCE_MAX`].
     pub fn absorbance(self, level: u32) -> f64 {
-        let share = f64::from(level % self.alphas) / f64::from(self.alphas - 1);
-        share / (MOST_LEVEL - share)
+        let fraction = f64::from(level % self.alphas) / f64::from(self.alphas - 1);
+        fraction / (MOST_LEVEL - fraction)
     }
 
     /// The warped depth in the middle of a level's bin, not mirrored.
@@ -207,8 +207,8 @@ mod tests {
 
     /// `b/(1 + b)` is off by half a step, so `b` by what half a step more makes of it.
     #[test]
-    fn end_codes_keep_the_opacity_of_the_extreme() {
-        for code in [NEAR_END, FAR_END] {
+    fn extreme_codes_keep_the_opacity_of_the_extreme() {
+        for code in [NEAREST_CODE, FARTHEST_CODE] {
             assert_eq!(code.bins * code.alphas, DEPTH_CODES);
             let bin = 2.0 / f64::from(code.bins);
             for i in 0..=1000 {
@@ -217,9 +217,9 @@ mod tests {
                 let level = code.level(0.3, exact);
                 let error = (code.absorbance(level) - exact).abs();
                 let step = 0.5 / f64::from(code.alphas - 1);
-                let share = exact / (exact + 1.0) * MOST_LEVEL + step;
-                let limit = if share < MOST_LEVEL {
-                    share / (MOST_LEVEL - share) - exact + 1e-12
+                let fraction = exact / (exact + 1.0) * MOST_LEVEL + step;
+                let limit = if fraction < MOST_LEVEL {
+                    fraction / (MOST_LEVEL - fraction) - exact + 1e-12
                 } else {
                     ABSORBANCE_MAX
                 };

@@ -21,7 +21,7 @@ pub(crate) const fn function_name(output: Output) -> &'static str {
 pub(crate) fn call(model: &Model) -> String {
     let (inputs, output) = (model.meta.recipe.inputs, model.meta.output);
     let parameters = inputs.surroundings().parameters;
-    let function = if output.is_share() {
+    let function = if output.is_fraction() {
         "peelnet_share"
     } else {
         function_name(output)
@@ -61,8 +61,8 @@ pub(crate) fn weight_function(model: &Model, precision: Precision) -> String {
     let clamped = |value: &str, low: f32, high: f32| {
         format!("clamp({value}, {}, {})", float(low), float(high))
     };
-    let (lines, last) = network(model, !output.is_share(), precision);
-    if !output.is_share() {
+    let (lines, last) = network(model, !output.is_fraction(), precision);
+    if !output.is_fraction() {
         let (low, high) = output.range();
         let answer = if output.count() == 1 {
             clamped(&format!("{last}_a"), low, high)

@@ -69,13 +69,18 @@ fn tolerance(model: &Model, raw: &[f64]) -> f64 {
         .map(|(i, &x)| i.normalise(x))
         .collect();
     let sum = EXPORT_F32 * model.mlp.magnitude(&normalised);
-    if !model.meta.output.is_share() {
+    if !model.meta.output.is_fraction() {
         return sum;
     }
-    let share = model.forward_raw(raw)[0];
-    let weight = |share: f64| model.meta.output.transmittance(raw, share.clamp(0.0, 1.0));
+    let fraction = model.forward_raw(raw)[0];
+    let weight = |fraction: f64| {
+        model
+            .meta
+            .output
+            .transmittance(raw, fraction.clamp(0.0, 1.0))
+    };
     // A sigmoid's slope is at most a quarter.
-    let spread = weight(share - 0.25 * sum) - weight(share + 0.25 * sum);
+    let spread = weight(fraction - 0.25 * sum) - weight(fraction + 0.25 * sum);
     EXPORT_F32 + spread.abs()
 }
 

@@ -152,12 +152,12 @@ impl Model {
     pub fn shader_output<F: Float + From<f32> + Sum>(&self, raw_inputs: &[F]) -> Vec<F> {
         let mut outputs = self.forward_raw(raw_inputs);
         let output = self.meta.output;
-        if output.is_share() {
+        if output.is_fraction() {
             let wide = |x: F| x.to_f64().unwrap_or(f64::NAN);
             let raw: Vec<f64> = raw_inputs.iter().map(|&x| wide(x)).collect();
-            for share in &mut outputs {
-                let t = output.transmittance(&raw, wide(*share));
-                *share = cast(t).unwrap_or_else(F::nan);
+            for fraction in &mut outputs {
+                let t = output.transmittance(&raw, wide(*fraction));
+                *fraction = cast(t).unwrap_or_else(F::nan);
             }
         }
         outputs

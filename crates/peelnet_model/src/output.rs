@@ -44,14 +44,14 @@ impl Output {
     }
 
     /// Whether the value is a share of absorbance `r`, and the function answers with its transmittance `exp(−r s)`.
-    pub const fn is_share(self) -> bool {
+    pub const fn is_fraction(self) -> bool {
         matches!(
             self,
             Self::AnchoredShare | Self::AnchoredShareSeparateEnds | Self::BoundedShare
         )
     }
 
-    /// The transmittance that an answer stands for where it is a share ([`Output::is_share`]), given the raw inputs: `exp(−x² s)` with the first
+    /// The transmittance that an answer stands for where it is a share ([`Output::is_fraction`]), given the raw inputs: `exp(−x² s)` with the first
     /// input `x`, the root of an absorbance, which is kept in 0 … [`ROOT_ABSORBANCE_LIMIT`]; bounds are kept in 0 … 1.
     ///
     /// # Panics

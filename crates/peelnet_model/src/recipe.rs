@@ -9,7 +9,7 @@ use peelnet_core::{methods::slabs::Design, mlp::Activation, statistics::SumPreci
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
 
 use crate::inputs::{
-    AnchoredInputs, DFAOIT, DfaoitInputs, FIVE, NINE, NMT, NetworkInputs, NmtInputs, REST,
+    ANCHORED, AnchoredInputs, DFAOIT, DfaoitInputs, FIVE, NINE, NMT, NetworkInputs, NmtInputs,
     SlabInputs, THESIS, ThesisInputs,
 };
 use crate::output::Output;
@@ -141,13 +141,13 @@ const fn relu(hidden: &'static [usize], output_activation: Activation) -> Networ
     }
 }
 
-/// What the networks of shares have in common; the inputs are those of the anchored ones.
-const SHARES: Declaration = Declaration {
+/// What the networks of fractions have in common; the inputs are those of the anchored ones.
+const FRACTIONS: Declaration = Declaration {
     name: "",
     method: "",
     inputs: &AnchoredInputs {
-        features: &REST,
-        separate_ends: false,
+        features: &ANCHORED,
+        separate_extremes: false,
     },
     output: Output::BoundedShare,
     sums: SumPrecision::Half,
@@ -163,7 +163,7 @@ const COMPETITOR: Declaration = Declaration {
     network: relu(&[32, 16], Activation::Sigmoid),
     budget: ROWS,
     loss: None,
-    ..SHARES
+    ..FRACTIONS
 };
 
 impl Recipe {
@@ -197,7 +197,7 @@ impl Recipe {
             features: &FIVE,
         },
         network: relu(&[], Activation::Sigmoid),
-        ..SHARES
+        ..FRACTIONS
     });
 
     /// Three slabs in 34 bytes a pixel: the default.
@@ -209,7 +209,7 @@ impl Recipe {
             features: &NINE,
         },
         network: relu(&[13], Activation::Sigmoid),
-        ..SHARES
+        ..FRACTIONS
     });
 
     /// Four slabs in 42 bytes a pixel: the best image.
@@ -220,7 +220,7 @@ impl Recipe {
             design: Design::LARGE,
             features: &NINE,
         },
-        ..SHARES
+        ..FRACTIONS
     });
 
     /// The pixel's moments and its two ends: the cheapest network that beats moments.
@@ -229,7 +229,7 @@ impl Recipe {
         method: "deep-anchored-small",
         output: Output::AnchoredShare,
         network: relu(&[8], Activation::Sigmoid),
-        ..SHARES
+        ..FRACTIONS
     });
 
     /// The same inputs, separate ends.
@@ -237,11 +237,11 @@ impl Recipe {
         name: "anchored-medium",
         method: "deep-anchored-medium",
         inputs: &AnchoredInputs {
-            features: &REST,
-            separate_ends: true,
+            features: &ANCHORED,
+            separate_extremes: true,
         },
         output: Output::AnchoredShareSeparateEnds,
-        ..SHARES
+        ..FRACTIONS
     });
 
     /// Tsopouridis et al. 2024, "Neural Moment Transparency": transmittance from four moments.
@@ -365,11 +365,11 @@ mod tests {
             for (i, name) in names.iter().enumerate() {
                 assert!(!names[..i].contains(name), "{recipe} reads {name} twice");
             }
-            let shares = recipe.output.is_share();
-            assert_eq!(recipe.loss.is_some(), shares, "{recipe}");
+            let fractions = recipe.output.is_fraction();
+            assert_eq!(recipe.loss.is_some(), fractions, "{recipe}");
             let separate = recipe.output == Output::AnchoredShareSeparateEnds;
             assert_eq!(recipe.inputs.known_apart(), separate, "{recipe}");
-            assert!(!shares || names[0] == "root_absorbance", "{recipe}");
+            assert!(!fractions || names[0] == "root_absorbance", "{recipe}");
             let bounded = recipe.output == Output::BoundedShare;
             let bounds = ["share_low", "share_high"];
             assert!(!bounded || names[3..5] == bounds, "{recipe}");

@@ -1,7 +1,7 @@
 //! Features of the rest of a pixel in closed form: every constant of theirs, a tenth larger, moves a value here by more than a rounding.
 
-use peelnet_core::{methods::anchored::Rest, statistics::Statistics};
-use peelnet_model::inputs::{REST, values};
+use peelnet_core::{methods::anchored::Residual, statistics::Statistics};
+use peelnet_model::inputs::{ANCHORED, values};
 
 const TOLERANCE: f64 = 1e-9;
 
@@ -14,13 +14,13 @@ fn moments(layers: &[(f64, f64)]) -> [f64; 5] {
 }
 
 /// A rest seen from `zeta`, in a pixel of this much absorbance and this range.
-fn rest_from(layers: &[(f64, f64)], zeta: f64, absorbance: f64, range: [f64; 2]) -> Rest {
+fn residual(layers: &[(f64, f64)], zeta: f64, absorbance: f64, range: [f64; 2]) -> Residual {
     let s = Statistics {
         moments: [absorbance, 0.0, 0.0, 0.0, 0.0],
         nearest: range[0],
         farthest: range[1],
     };
-    Rest::new(&s, &moments(layers), zeta)
+    Residual::new(&s, &moments(layers), zeta)
 }
 
 /// Two layers of a range one wide, in the middle of the frame's and beside it: 1 at −½ and 3 at ½ of the pixel's range.
@@ -28,8 +28,8 @@ fn rest_from(layers: &[(f64, f64)], zeta: f64, absorbance: f64, range: [f64; 2])
 fn two_layers() {
     for shift in [0.0, 0.25, -0.4] {
         let layers = [(1.0, shift - 0.25), (3.0, shift + 0.25)];
-        let rest = rest_from(&layers, shift + 0.1, 9.0, [shift - 0.5, shift + 0.5]);
-        let found = values(&REST[..3], &rest).into_iter().chain(rest.means);
+        let rest = residual(&layers, shift + 0.1, 9.0, [shift - 0.5, shift + 0.5]);
+        let found = values(&ANCHORED[..3], &rest).into_iter().chain(rest.means);
         // Mean powers of −½ once and ½ three times.
         let wanted = [2.0, 0.6, 0.625, 0.25, 0.25, 0.0625, 0.0625];
         found
@@ -43,7 +43,10 @@ fn two_layers() {
 fn little_is_noise() {
     for (b, absorbance, mean) in [(5e-4, 1.024, 0.6), (5e-7, 1e-5, 0.6), (2e-3, 1.024, 0.7)] {
         near(
-            values(&REST, &rest_from(&[(b, 0.4)], 0.0, absorbance, [-1.0, 1.0]))[2],
+            values(
+                &ANCHORED,
+                &residual(&[(b, 0.4)], 0.0, absorbance, [-1.0, 1.0]),
+            )[2],
             mean,
         );
     }
@@ -64,7 +67,7 @@ fn narrow_pixels_have_more_bias() {
         (0.0625, 0.25),
     ] {
         let (x, range) = (0.02, [-half_range, half_range]);
-        let rest = rest_from(&[(1.0, 0.0)], x * half_range, 2.0, range);
+        let rest = residual(&[(1.0, 0.0)], x * half_range, 2.0, range);
         let [low, high] = rest.moment_bounds();
         near(high - low, own(x, bias));
     }
@@ -73,7 +76,7 @@ fn narrow_pixels_have_more_bias() {
 /// Mean powers of a pixel whose fragments are a rounding apart end at 65,536, and places at its ends.
 #[test]
 fn powers_are_finite() {
-    let rest = rest_from(&[(1.0, 0.9)], 1.0, 2.0, [0.0, 1e-9]);
+    let rest = residual(&[(1.0, 0.9)], 1.0, 2.0, [0.0, 1e-9]);
     assert_eq!(rest.means, [1.0, 65_536.0, 65_536.0, 65_536.0]);
     assert_eq!(rest.place, 1.0);
 }

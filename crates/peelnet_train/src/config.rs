@@ -227,10 +227,10 @@ impl Config {
                 return bad(setting, value.to_string(), hint);
             }
         }
-        for (setting, share) in [("held_out", self.held_out), ("validation", self.validation)] {
-            if !(0.0..1.0).contains(&share) || self.held_out + self.validation >= 1.0 {
+        for (setting, fraction) in [("held_out", self.held_out), ("validation", self.validation)] {
+            if !(0.0..1.0).contains(&fraction) || self.held_out + self.validation >= 1.0 {
                 let hint = "give a share from 0 to below 1, both together below 1";
-                return bad(setting, share.to_string(), hint);
+                return bad(setting, fraction.to_string(), hint);
             }
         }
         if self.recipe.loss.is_none() && self.loss != PixelLoss::default() {

@@ -8,7 +8,7 @@ use peelnet_model::inputs::{Examples, FragmentExample, Observed, PeeledPixel};
 
 use crate::error::TrainError;
 use crate::sampler::Sample;
-use crate::table::{ALPHA, COLOR, EXACT, KNOWN, LEFT, REST, SUM, TrainingData};
+use crate::table::{ALPHA, COLOR, EXACT, KNOWN, LEFT, RESIDUAL, SUM, TrainingData};
 
 const ROWS_AT_A_TIME: usize = 1 << 16;
 
@@ -169,14 +169,14 @@ fn add(recipe: Recipe, data: &mut TrainingData, pixel: &PeeledPixel<'_>, subset:
             }
         }
         Examples::Pixel(fragments) => {
-            share_pixel(data, pixel, subset, recipe.inputs.known_apart(), &fragments);
+            pixel_example(data, pixel, subset, recipe.inputs.known_apart(), &fragments);
         }
     }
 }
 
 /// The fragments of a pixel whose share the network is asked for, with the inputs of each, and what the others contribute: those are `apart`
 /// where they are not normalised with the rest.
-fn share_pixel(
+fn pixel_example(
     data: &mut TrainingData,
     pixel: &PeeledPixel<'_>,
     subset: Subset,
@@ -198,7 +198,7 @@ fn share_pixel(
         if let Some((absorbance, inputs)) = &fragment.unknown {
             data.push_row(inputs.iter().copied(), [exact]);
             if let Some(pixels) = &mut data.pixels {
-                pixels.rows[REST].push(*absorbance as f32);
+                pixels.rows[RESIDUAL].push(*absorbance as f32);
                 pixels.rows[ALPHA].push(a as f32);
                 for (column, c) in pixels.rows[COLOR..].iter_mut().zip(color) {
                     column.push(c);

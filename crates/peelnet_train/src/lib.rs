@@ -92,6 +92,7 @@ pub use lock::OutputLock;
 pub use peelnet_model::PixelLoss;
 pub use report::{End, EpochReport, Outcome};
 pub use table::{
-    ALPHA, COLOR, DataSplit, EXACT, KNOWN, LEFT, PixelColumns, REST, SUM, TrainingData, UsedRows,
+    ALPHA, COLOR, DataSplit, EXACT, KNOWN, LEFT, PixelColumns, RESIDUAL, SUM, TrainingData,
+    UsedRows,
 };
 pub use training_loop::{RunOptions, train};

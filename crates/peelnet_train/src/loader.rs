@@ -116,13 +116,14 @@ impl TrainingData {
 
 /// What examples should be left for and are not.
 fn lacking(data: &TrainingData, config: &Config) -> Option<&'static str> {
-    let shares = [
+    let fractions = [
         (Subset::Train, 1.0, "training"),
         (Subset::Validation, config.validation, "validation"),
         (Subset::Test, config.held_out, "testing"),
     ];
-    let mut shares = shares.into_iter();
-    let lacks = shares.find(|&(subset, share, _)| share > 0.0 && data.examples(subset) == 0);
+    let mut fractions = fractions.into_iter();
+    let lacks =
+        fractions.find(|&(subset, fraction, _)| fraction > 0.0 && data.examples(subset) == 0);
     lacks.map(|(.., name)| name)
 }
 

@@ -16,7 +16,7 @@ use peelnet_model::PixelLoss;
 
 use crate::network::Network;
 use crate::normalise::Normalisation;
-use crate::table::{ALPHA, COLOR, EXACT, KNOWN, LEFT, REST, SUM, TrainingData};
+use crate::table::{ALPHA, COLOR, EXACT, KNOWN, LEFT, RESIDUAL, SUM, TrainingData};
 
 /// Some examples on a device.
 pub(crate) struct Window {
@@ -128,8 +128,8 @@ impl Window {
         let row = |k: usize| rows.clone().narrow(0, known + k, 1);
         let exact = || rows.clone().narrow(0, self.inputs, 1);
         let column = |k: usize| fixed.clone().narrow(0, k, 1);
-        let share = network.forward(rows.clone().narrow(0, 0, self.inputs));
-        let through = (row(REST) * share).neg().exp();
+        let fraction = network.forward(rows.clone().narrow(0, 0, self.inputs));
+        let through = (row(RESIDUAL) * fraction).neg().exp();
         let contribution = row(ALPHA) * through.clone();
         let squares = |error: Tensor<2>| {
             (column(WEIGHT).select(1, pixel.clone()) * error.clone() * error).sum()
@@ -154,8 +154,9 @@ impl Window {
             return squares(error);
         }
         // Colour by colour: Σ over all fragments of (p̂ − αT) c.
-        let ends = fixed.clone().narrow(0, KNOWN, 3) * scale - fixed.clone().narrow(0, EXACT, 3);
-        let image = ends.select_assign(
+        let extremes =
+            fixed.clone().narrow(0, KNOWN, 3) * scale - fixed.clone().narrow(0, EXACT, 3);
+        let image = extremes.select_assign(
             1,
             pixel,
             rows.clone().narrow(0, known + COLOR, 3) * error,

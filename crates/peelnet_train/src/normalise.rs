@@ -54,14 +54,14 @@ impl Moments {
             return if self.count == 0 { other } else { self };
         }
         let count = self.count + other.count;
-        let share = other.count as f64 / count as f64;
+        let fraction = other.count as f64 / count as f64;
         let difference = other.mean - self.mean;
         Self {
             count,
-            mean: self.mean + difference * share,
+            mean: self.mean + difference * fraction,
             squares: self.squares
                 + other.squares
-                + difference * difference * (self.count as f64 * share),
+                + difference * difference * (self.count as f64 * fraction),
             min: self.min.min(other.min),
             max: self.max.max(other.max),
         }

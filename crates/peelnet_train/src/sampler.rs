@@ -313,13 +313,13 @@ mod tests {
                 sample.begin(of_view(view));
                 let pixels = (0..pixels(view)).filter(|&x| sample.keep([x, view], rows(x)));
                 kept += pixels.map(rows).sum::<usize>() as u64;
-                let share = (kept - before) as f64 / of_view(view) as f64;
+                let fraction = (kept - before) as f64 / of_view(view) as f64;
                 let expected = (most as f64 / total as f64).min(1.0);
                 // Six standard deviations of pixels of up to twelve rows, and the aim below the limit.
                 let spread = 6.0 * (12.0 * expected / of_view(view) as f64).sqrt();
                 assert!(
-                    (share - expected).abs() <= spread + 0.02 * expected,
-                    "{most}, {view}: {share}"
+                    (fraction - expected).abs() <= spread + 0.02 * expected,
+                    "{most}, {view}: {fraction}"
                 );
             }
             assert!(kept <= most, "{kept} of {most}");

@@ -69,14 +69,14 @@ pub struct UsedRows {
 pub struct PixelColumns {
     /// First row of each pixel.
     pub first: Vec<u32>,
-    /// For each row: [`REST`], [`ALPHA`], and three of [`COLOR`].
+    /// For each row: [`RESIDUAL`], [`ALPHA`], and three of [`COLOR`].
     pub rows: [Vec<f32>; 5],
     /// For each pixel, what its ends contribute without a network: [`LEFT`], [`SUM`], and three each of [`KNOWN`] and [`EXACT`].
     pub fixed: [Vec<f32>; 8],
 }
 
 /// Absorbance whose share in front the network predicts.
-pub const REST: usize = 0;
+pub const RESIDUAL: usize = 0;
 /// Opacity, times the transmittance of what is known to lie in front.
 pub const ALPHA: usize = 1;
 /// Radiance.

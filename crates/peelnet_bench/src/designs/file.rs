@@ -1,8 +1,8 @@
 use super::{DESIGNS, Entry, Source};
 use crate::EvalError;
 use peelnet_core::{
-    methods::slabs::{Between, Design, Extent, Kept, MAX_SLABS},
-    statistics::{DEPTH_CODES, EndCode, FAR_END},
+    methods::slabs::{Design, Extent, Interior, Kept, MAX_SLABS},
+    statistics::{DEPTH_CODES, ExtremeCode, FARTHEST_CODE},
 };
 use peelnet_model::inputs::{FIVE, Feature, NINE, SlabInputs};
 use peelnet_model::{Budget, Declaration, Network, PixelLoss, Recipe};
@@ -202,17 +202,17 @@ impl RawDesign {
         Ok(Vec::leak(kept.collect()))
     }
 
-    fn records(&self) -> Result<EndCode, String> {
+    fn records(&self) -> Result<ExtremeCode, String> {
         let Some(text) = &self.records else {
-            return Ok(FAR_END);
+            return Ok(FARTHEST_CODE);
         };
         let parsed = text.split_once('x').and_then(|(bins, alphas)| {
-            Some(EndCode {
+            Some(ExtremeCode {
                 bins: bins.parse().ok()?,
                 alphas: alphas.parse().ok()?,
             })
         });
-        let fits = |code: &EndCode| {
+        let fits = |code: &ExtremeCode| {
             code.alphas > 1 && code.bins.checked_mul(code.alphas) == Some(DEPTH_CODES)
         };
         parsed.filter(fits).ok_or_else(|| {
@@ -222,7 +222,7 @@ impl RawDesign {
         })
     }
 
-    fn inputs(&self) -> Result<&'static [&'static Feature<Between>], String> {
+    fn inputs(&self) -> Result<&'static [&'static Feature<Interior>], String> {
         let Some(names) = &self.inputs else {
             return Ok(&NINE);
         };
@@ -230,7 +230,7 @@ impl RawDesign {
         if !names.iter().map(String::as_str).take(5).eq(first) {
             return Err(format!("inputs must begin with {}", first.join(", ")));
         }
-        let mut found: Vec<&'static Feature<Between>> = Vec::new();
+        let mut found: Vec<&'static Feature<Interior>> = Vec::new();
         for name in names {
             let Some(&feature) = NINE.iter().find(|f| f.about.name == name) else {
                 let all = NINE.map(|f| f.about.name).join(", ");
@@ -288,12 +288,15 @@ seed = 7
         };
         let slabs = [(0.25, true, true, false), (1.0, false, true, true)];
         assert_eq!(kept(plain.design.slabs), slabs);
-        assert_eq!((plain.design.records, plain.design.apart), (FAR_END, false));
+        assert_eq!(
+            (plain.design.records, plain.design.apart),
+            (FARTHEST_CODE, false)
+        );
         assert_eq!((plain.inputs.len(), plain.seed), (9, 1));
         assert_eq!(plain.recipe.network.hidden, [12]);
         assert_eq!(plain.recipe.loss, Some(PixelLoss::Image));
         assert_eq!(kept(full.design.slabs), [(1.0, false, false, true)]);
-        let EndCode { bins, alphas } = full.design.records;
+        let ExtremeCode { bins, alphas } = full.design.records;
         assert_eq!((bins, alphas, full.design.extent), (960, 64, Extent::Frame));
         let trained = full.recipe.inputs.downcast::<SlabInputs>().unwrap();
         assert!(full.design.apart && !trained.design.apart);

@@ -16,19 +16,19 @@ use crate::{
         moments::power::four_moment_bounds,
     },
     statistics::{
-        self, DEPTH_CODES, FAR_END, NEAR_END, SAME_CODE, Statistics, SumPrecision, depth_code,
-        zeta_of_code,
+        self, DEPTH_CODES, FARTHEST_CODE, NEAREST_CODE, SAME_CODE, Statistics, SumPrecision,
+        depth_code, zeta_of_code,
     },
 };
 
 /// Fragments of less opacity are composited, but are never a pixel's nearest or farthest: an invisible fragment would
 /// waste the anchor.
-pub const FAINT: f32 = 1.0 / 255.0;
+pub const LOW_ALPHA: f32 = 1.0 / 255.0;
 
 /// Below this share of the pixel's absorbance the moments of the rest are rounding noise of 16-bit sums.
 const NOISE: f64 = 1.0 / 1024.0;
 
-/// Pull of the moments towards a measure that can be inverted, for [`Rest::moment_bounds`].
+/// Pull of the moments towards a measure that can be inverted, for [`Residual::moment_bounds`].
 const BIAS: f64 = 1.0 / 1024.0;
 
 /// More of that pull for narrow pixels: moments of the frame's range lose `scale⁴` of their precision where they are moved to
@@ -45,7 +45,7 @@ const BIAS_MAX: f64 = 0.25;
 /// The rest of a pixel, seen from one fragment: all fragments but that one and the pixel's ends. Depths are over the pixel's
 /// range, −1 at the nearest and 1 at the farthest fragment.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Rest {
+pub struct Residual {
     pub absorbance: f64,
     pub place: f64,
     /// Mean powers 1 to 4 of the rest's depth.
@@ -54,7 +54,7 @@ pub struct Rest {
     pub bias: f64,
 }
 
-impl Rest {
+impl Residual {
     /// Of a fragment at depth `zeta`, given the pixel's statistics and the moments `m` of the rest.
     pub fn new(s: &Statistics, m: &[f64; 5], zeta: f64) -> Self {
         let level = 2.0 / f64::from(DEPTH_CODES - 1);
@@ -84,11 +84,17 @@ impl Rest {
     /// (Münstermann et al. 2018, §3.2; overestimation 0 and 1). NaN, where the points of a bound coincide, becomes 0.
     pub fn moment_bounds(&self) -> [f64; 2] {
         let (low, high) = four_moment_bounds(self.means, self.bias, self.place);
-        [low, high].map(|share| if share > 0.0 { share.min(1.0) } else { 0.0 })
+        [low, high].map(|fraction| {
+            if fraction > 0.0 {
+                fraction.min(1.0)
+            } else {
+                0.0
+            }
+        })
     }
 }
 
-impl Unknown for Rest {
+impl Unknown for Residual {
     fn absorbance(&self) -> f64 {
         self.absorbance
     }
@@ -100,26 +106,29 @@ pub fn known_fragments(
     fragments: &[(f32, f32)],
     warp: &DepthWarp,
     precision: SumPrecision,
-) -> Vec<KnownFragment<Rest>> {
+) -> Vec<KnownFragment<Residual>> {
     let points = super::points(fragments, warp);
     let visible = || points.iter().filter(|point| point.2);
     // Without a visible fragment the targets keep their clear values.
     let first = visible().map(|p| depth_code(p.1)).min();
     let first = first.unwrap_or(statistics::DEPTH_CODES - 1);
-    let near = visible().map(|&(b, z, _)| NEAR_END.mirrored(z, b)).max();
+    let near = visible()
+        .map(|&(b, z, _)| NEAREST_CODE.mirrored(z, b))
+        .max();
     let near = near.unwrap_or(0);
-    let far = visible().map(|&(b, z, _)| FAR_END.level(z, b)).max();
+    let far = visible().map(|&(b, z, _)| FARTHEST_CODE.level(z, b)).max();
     let far = far.unwrap_or(0);
     let s = Statistics {
         moments: Statistics::moments(&points, precision),
         nearest: zeta_of_code(first),
-        farthest: FAR_END.zeta(far),
+        farthest: FARTHEST_CODE.zeta(far),
     };
     points
         .iter()
         .map(|&(b, zeta, is_visible)| {
             let code = depth_code(zeta);
-            let (own_near, own_far) = (NEAR_END.mirrored(zeta, b), FAR_END.level(zeta, b));
+            let (own_near, own_far) =
+                (NEAREST_CODE.mirrored(zeta, b), FARTHEST_CODE.level(zeta, b));
             let known = |front| KnownFragment {
                 front,
                 unknown: None,
@@ -133,19 +142,19 @@ pub fn known_fragments(
             // An end that does not lie on its side of the fragment, or whose place in the target the fragment took itself (a
             // more opaque one in the same bin), stays with the rest.
             let front = if code > first && own_near != near {
-                NEAR_END.absorbance(near)
+                NEAREST_CODE.absorbance(near)
             } else {
                 0.0
             };
             let back = if own_far < far {
-                FAR_END.absorbance(far)
+                FARTHEST_CODE.absorbance(far)
             } else {
                 0.0
             };
             let rest = s.without(&[(b, zeta), (front, s.nearest), (back, s.farthest)]);
             KnownFragment {
                 front,
-                unknown: Some(Rest::new(&s, &rest, zeta)),
+                unknown: Some(Residual::new(&s, &rest, zeta)),
             }
         })
         .collect()
@@ -155,14 +164,14 @@ pub fn composite(
     fragments: &[Fragment],
     background: [f32; 3],
     warp: &DepthWarp,
-    separate_ends: bool,
-    share: impl Fn(&Rest) -> f64,
+    separate_extremes: bool,
+    fraction: impl Fn(&Residual) -> f64,
 ) -> [f32; 3] {
     let known = known_fragments(&points(fragments), warp, SumPrecision::Exact);
     let weights = known
         .iter()
-        .map(|f| (f.weight(&share), f.unknown.is_none()));
-    composite_weighted(fragments, background, separate_ends, weights)
+        .map(|f| (f.weight(&fraction), f.unknown.is_none()));
+    composite_weighted(fragments, background, separate_extremes, weights)
 }
 
 /// Composites a pixel with the weight of each fragment, and whether it is known. Those have sums of their own where they are `apart`.
@@ -187,7 +196,7 @@ pub fn composite_weighted(
     }
     let (t, background) = ((-total).exp(), background.map(f64::from));
     if apart {
-        resolve_separate_ends(sums[0], sums[1], t, background)
+        resolve_separate_extremes(sums[0], sums[1], t, background)
     } else {
         resolve(sums[0], t, background)
     }
@@ -197,17 +206,17 @@ pub fn composite_weighted(
 /// A pixel's colour from the sums of all its fragments, `Σ α c w` and `Σ α w`, its transmittance and the background. The shader
 /// twin is `peelnet_composite` in `learned/resolve.wgsl`.
 pub fn resolve(sums: [f64; 4], transmittance: f64, background: [f64; 3]) -> [f64; 3] {
-    let share = if sums[3] > 0.0 {
+    let fraction = if sums[3] > 0.0 {
         (1.0 - transmittance) / sums[3].max(f64::MIN_POSITIVE)
     } else {
         0.0
     };
-    std::array::from_fn(|k| sums[k] * share + background[k] * transmittance)
+    std::array::from_fn(|k| sums[k] * fraction + background[k] * transmittance)
 }
 
 /// The same with the pixel's ends in sums of their own. The shader twin is `peelnet_composite` in
 /// `learned/resolve_separate_ends.wgsl`.
-pub fn resolve_separate_ends(
+pub fn resolve_separate_extremes(
     between: [f64; 4],
     ends: [f64; 4],
     transmittance: f64,
@@ -246,8 +255,8 @@ mod tests {
             let points = points(&f);
             let exact = over::composite(&f, C0);
             let all = known_fragments(&points, &warp, SumPrecision::Exact);
-            for separate_ends in [false, true] {
-                let got = composite(&f, C0, &warp, separate_ends, |x| {
+            for separate_extremes in [false, true] {
+                let got = composite(&f, C0, &warp, separate_extremes, |x| {
                     // Which fragment it is, by what it sees.
                     let i = all.iter().position(|f| f.unknown == Some(*x));
                     let i = i.expect("one of them");
@@ -267,13 +276,13 @@ mod tests {
 
     /// Faint fragments take no anchor.
     #[test]
-    fn a_faint_fragment_is_no_anchor() {
+    fn a_low_alpha_fragment_is_no_anchor() {
         let f = [(1.0, 0.002), (2.0, 0.5), (3.0, 0.5)];
         let all = known_fragments(&f, &DepthWarp::new(1.0, 3.0), SumPrecision::Exact);
-        let [faint, nearest, farthest] = &all[..] else {
+        let [low_alpha, nearest, farthest] = &all[..] else {
             panic!("{all:?}")
         };
-        assert!(faint.unknown.is_some() && farthest.unknown.is_none());
+        assert!(low_alpha.unknown.is_some() && farthest.unknown.is_none());
         assert_eq!((nearest.front, nearest.unknown), (0.0, None));
     }
 }

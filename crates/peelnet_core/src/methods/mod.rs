@@ -22,7 +22,7 @@ use crate::{
 pub type Point = (f64, f64, bool);
 
 pub fn point(alpha: f32, zeta: f64) -> Point {
-    (absorbance(alpha), zeta, alpha >= anchored::FAINT)
+    (absorbance(alpha), zeta, alpha >= anchored::LOW_ALPHA)
 }
 
 /// Of fragments that are given as (linear depth, α).

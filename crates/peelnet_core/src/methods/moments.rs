@@ -29,7 +29,7 @@ pub struct Settings {
     /// Pull towards moments of a measure that can always be inverted.
     pub bias: f64,
     /// Whether a fragment's own absorbance is taken out of the moments before it is asked what lies in front of it.
-    pub own_share_out: bool,
+    pub own_absorbance_out: bool,
 }
 
 impl Settings {
@@ -48,7 +48,7 @@ impl Settings {
             basis,
             overestimation: 0.25,
             bias,
-            own_share_out: false,
+            own_absorbance_out: false,
         }
     }
 }
@@ -98,8 +98,8 @@ impl Moments {
             Basis::Power(_) => power::bounds::<5>(means, bias, zeta),
             Basis::Trigonometric(count) => trigonometric::bounds(means, count, bias, zeta),
         };
-        let share = low + settings.overestimation * (high - low);
-        let t = (-total * share).exp();
+        let fraction = low + settings.overestimation * (high - low);
+        let t = (-total * fraction).exp();
         // Degenerate points give NaN; nothing in front is the harmless answer.
         if t.is_nan() { 1.0 } else { t.min(1.0) }
     }
@@ -114,7 +114,7 @@ pub fn transmittances(fragments: &[(f32, f32)], warp: &DepthWarp, settings: &Set
     }
     let in_front = points.iter().map(|&(b, zeta, _)| {
         let mut others = all;
-        if settings.own_share_out {
+        if settings.own_absorbance_out {
             others.add(-b, zeta);
         }
         others.transmittance(zeta, settings)

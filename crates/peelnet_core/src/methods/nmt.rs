@@ -20,7 +20,7 @@ pub const EXTENT_FLOOR: f64 = 1.0 / 65_536.0;
 
 /// What is known of a fragment and its pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Seen {
+pub struct FragmentMoments {
     pub zeta: f64,
     /// Warped depths of the pixel's nearest and farthest fragment.
     pub extent: [f64; 2],
@@ -29,7 +29,7 @@ pub struct Seen {
     pub moments: [f64; 5],
 }
 
-impl Seen {
+impl FragmentMoments {
     /// What is known of each of a pixel's fragments, given as (linear depth, α), in any order.
     pub fn all(points: &[(f32, f32)], warp: &DepthWarp) -> Vec<Self> {
         let zetas: Vec<f64> = points.iter().map(|&(z, _)| warp.apply(z.into())).collect();
@@ -39,13 +39,13 @@ impl Seen {
         }
         let nearest = zetas.iter().copied().fold(f64::INFINITY, f64::min);
         let farthest = zetas.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let seen = |&zeta: &f64| Self {
+        let fragment = |&zeta: &f64| Self {
             zeta,
             extent: [nearest, farthest],
             count: points.len(),
             moments: std::array::from_fn(|k| moments.sums[k]),
         };
-        zetas.iter().map(seen).collect()
+        zetas.iter().map(fragment).collect()
     }
 
     /// `(e^d − e^d_near) / (e^d_far − e^d_near)`, 0 at the nearest and 1 at the farthest fragment.

@@ -3,10 +3,10 @@
 //!
 //! What lies in other slabs is wholly in front of a fragment or wholly behind it, so that its absorbance is a plain sum. In the fragment's
 //! own slab the nearest and the farthest layer are known, and up to eight layers of a pixel are. What lies between them is
-//! bounded by its mean depth (Markov's inequality), and only where between the bounds the truth lies is guessed: see [`Between`].
+//! bounded by its mean depth (Markov's inequality), and only where between the bounds the truth lies is guessed: see [`Interior`].
 //!
 //! Three geometry passes: the range, the sums and records, the colours. Records are levels of depth and opacity under MAX blending
-//! ([`EndCode`]). The shader twin is `learned/slabs.wgsl`, with the file of a [`Layout`], such as `slabs_small.wgsl`.
+//! ([`ExtremeCode`]). The shader twin is `learned/slabs.wgsl`, with the file of a [`Layout`], such as `slabs_small.wgsl`.
 
 use super::{
     Point,
@@ -17,7 +17,7 @@ use super::{
 use crate::{
     absorbance::DepthWarp,
     fragment::Fragment,
-    statistics::{EndCode, FAR_END, SumPrecision, half_of_code},
+    statistics::{ExtremeCode, FARTHEST_CODE, SumPrecision, half_of_code},
 };
 use half::f16;
 use serde::{Deserialize, Serialize};
@@ -56,7 +56,7 @@ pub struct Design {
     /// The slabs, nearest first; at most [`MAX_SLABS`], of which the last ends at 1.
     pub slabs: &'static [Kept],
     /// How nearest and farthest fragments are kept, by their place in the slab.
-    pub records: EndCode,
+    pub records: ExtremeCode,
     pub extent: Extent,
     /// Whether the colours of known fragments have a sum of their own.
     pub apart: bool,
@@ -110,7 +110,7 @@ impl Design {
             until(0.5, true, false),
             until(1.0, true, false),
         ],
-        records: FAR_END,
+        records: FARTHEST_CODE,
         extent: Extent::Pixel,
         apart: false,
     };
@@ -224,7 +224,7 @@ struct Slab {
 /// What lies in a fragment's slab besides the fragment and the slab's known ends, and what the fragment can know of it. Depths are 0 at
 /// the nearer and 1 at the farther of the two.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Between {
+pub struct Interior {
     /// Absorbance `r` of it.
     pub absorbance: f64,
     pub place: f64,
@@ -239,7 +239,7 @@ pub struct Between {
     pub nearest: f64,
 }
 
-impl Unknown for Between {
+impl Unknown for Interior {
     fn absorbance(&self) -> f64 {
         self.absorbance
     }
@@ -309,7 +309,7 @@ impl Slabs {
         }
     }
 
-    pub fn known(&self, absorbance: f64, zeta: f64, counts: bool) -> KnownFragment<Between> {
+    pub fn known(&self, absorbance: f64, zeta: f64, counts: bool) -> KnownFragment<Interior> {
         let place = self.place(absorbance, zeta);
         let slab = &self.slabs[place.slab];
         let before: f64 = self.slabs[..place.slab].iter().map(|s| s.absorbance).sum();
@@ -336,7 +336,7 @@ impl Slabs {
         }
     }
 
-    fn between(&self, place: &Place, slab: &Slab, others: f64) -> Between {
+    fn between(&self, place: &Place, slab: &Slab, others: f64) -> Interior {
         let (kept, records) = (&self.design.slabs[place.slab], &self.design.records);
         let noise = (slab.absorbance / 1024.0).max(1e-6);
         let alphas = records.alphas;
@@ -392,7 +392,7 @@ impl Slabs {
                 [(x - mean) / x.max(1e-6), 1.0]
             };
         }
-        Between {
+        Interior {
             absorbance: rest.max(0.0),
             place: x,
             mean,
@@ -410,7 +410,7 @@ pub fn known_fragments(
     warp: &DepthWarp,
     design: Design,
     precision: SumPrecision,
-) -> Vec<KnownFragment<Between>> {
+) -> Vec<KnownFragment<Interior>> {
     let points = points(fragments, warp);
     let slabs = Slabs::gather(&points, design, precision);
     let known = |&(b, zeta, counts): &Point| slabs.known(b, zeta, counts);
@@ -418,7 +418,7 @@ pub fn known_fragments(
 }
 
 /// The guess without a network: the middle of the bounds.
-pub const fn middle(_: &Between) -> f64 {
+pub const fn middle(_: &Interior) -> f64 {
     0.5
 }
 
@@ -428,7 +428,7 @@ pub fn composite(
     background: [f32; 3],
     warp: &DepthWarp,
     design: Design,
-    guess: impl Fn(&Between) -> f64,
+    guess: impl Fn(&Interior) -> f64,
 ) -> [f32; 3] {
     let zeta = |depth: f32| warp.apply(depth.into());
     let exact = SumPrecision::Exact;
@@ -442,7 +442,7 @@ pub fn composite_on(
     zeta: impl Fn(f32) -> f64,
     design: Design,
     precision: SumPrecision,
-    guess: impl Fn(&Between) -> f64,
+    guess: impl Fn(&Interior) -> f64,
 ) -> [f32; 3] {
     let all = fragments.iter();
     let points: Vec<Point> = all.map(|f| point(f.alpha, zeta(f.depth))).collect();

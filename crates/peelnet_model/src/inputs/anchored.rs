@@ -6,11 +6,11 @@
 
 use super::{feature::*, network_inputs::*, surroundings::*};
 use peelnet_core::methods::{
-    anchored::{self, Rest},
+    anchored::{self, Residual},
     known::KnownFragment,
 };
 
-const OF_REST: &str = "of the rest's absorbance";
+const OF_RESIDUAL: &str = "of the rest's absorbance";
 
 const MOMENT_BOUNDS: Shared = Shared {
     name: "bounds",
@@ -19,7 +19,7 @@ const MOMENT_BOUNDS: Shared = Shared {
 };
 
 /// All features of the rest.
-pub static REST: [&Feature<Rest>; 5] = [
+pub static ANCHORED: [&Feature<Residual>; 5] = [
     &Feature::new(
         "root_absorbance",
         "root of the rest's absorbance",
@@ -38,19 +38,23 @@ pub static REST: [&Feature<Rest>; 5] = [
         "0.5 * rest.means.x + 0.5",
         |rest| (rest.means[0] + 1.0) / 2.0,
     ),
-    &Feature::<Rest>::new("share_low", OF_REST, "bounds.x", |r| r.moment_bounds()[0])
-        .sharing(&MOMENT_BOUNDS),
-    &Feature::<Rest>::new("share_high", OF_REST, "bounds.y", |r| r.moment_bounds()[1])
-        .sharing(&MOMENT_BOUNDS),
+    &Feature::<Residual>::new("share_low", OF_RESIDUAL, "bounds.x", |r| {
+        r.moment_bounds()[0]
+    })
+    .sharing(&MOMENT_BOUNDS),
+    &Feature::<Residual>::new("share_high", OF_RESIDUAL, "bounds.y", |r| {
+        r.moment_bounds()[1]
+    })
+    .sharing(&MOMENT_BOUNDS),
 ];
 
 /// The rest of a pixel. The first feature must be the root of its absorbance.
 #[derive(Debug)]
 pub struct AnchoredInputs {
     /// The features, in order.
-    pub features: &'static [&'static Feature<Rest>],
+    pub features: &'static [&'static Feature<Residual>],
     /// Whether the nearest and the farthest fragment accumulate apart.
-    pub separate_ends: bool,
+    pub separate_extremes: bool,
 }
 
 impl NetworkInputs for AnchoredInputs {
@@ -59,8 +63,8 @@ impl NetworkInputs for AnchoredInputs {
     }
 
     fn surroundings(&self) -> &'static Surroundings {
-        if self.separate_ends {
-            &SEPARATE_ENDS
+        if self.separate_extremes {
+            &SEPARATE_EXTREMES
         } else {
             &ONE_SUM
         }
@@ -75,11 +79,11 @@ impl NetworkInputs for AnchoredInputs {
     }
 
     fn known_apart(&self) -> bool {
-        self.separate_ends
+        self.separate_extremes
     }
 }
 
-fn known(pixel: &Observed<'_>) -> Vec<KnownFragment<Rest>> {
+fn known(pixel: &Observed<'_>) -> Vec<KnownFragment<Residual>> {
     anchored::known_fragments(pixel.fragments, &pixel.warp, pixel.precision)
 }
 
@@ -107,7 +111,7 @@ static ONE_SUM: Surroundings = Surroundings {
     resolve: "peelnet_resolve(sums, moments.x, background)",
 };
 
-static SEPARATE_ENDS: Surroundings = Surroundings {
+static SEPARATE_EXTREMES: Surroundings = Surroundings {
     modules: &[
         "learned::zeta",
         "learned::absorbance",
@@ -126,7 +130,7 @@ static SEPARATE_ENDS: Surroundings = Surroundings {
                 kind: ValueKind::Pair,
                 call: "peelnet_fragment(alpha, zeta, moments, extent)",
             }),
-            &[sum("sums", HALF, BETWEEN), sum("ends", HALF, ENDS)],
+            &[sum("sums", HALF, INTERIOR), sum("ends", HALF, EXTREMES)],
         ),
     ],
     resolve: "peelnet_resolve(sums, ends, moments.x, background)",
@@ -143,6 +147,6 @@ const STATISTICS: Pass = pass(
     ],
 );
 
-const BETWEEN: &str = "vec4f(alpha * rgb, alpha) * (f.x * (1.0 - min(f.y, 1.0)))";
+const INTERIOR: &str = "vec4f(alpha * rgb, alpha) * (f.x * (1.0 - min(f.y, 1.0)))";
 
-const ENDS: &str = "vec4f(alpha * rgb, alpha) * (f.x * min(f.y, 1.0))";
+const EXTREMES: &str = "vec4f(alpha * rgb, alpha) * (f.x * min(f.y, 1.0))";

@@ -1,29 +1,33 @@
 //! `nmt`: four raw moments of a pixel, and a depth. Every row is an example.
 
 use super::{feature::*, network_inputs::*, surroundings::*};
-use peelnet_core::methods::nmt::Seen;
+use peelnet_core::methods::nmt::FragmentMoments;
 
 /// The inputs of the network, in the published order: depth, the number of fragments, `b_0`, and `b_1 … b_4`.
-pub static NMT: [&Feature<Seen>; 7] = [
+pub static NMT: [&Feature<FragmentMoments>; 7] = [
     &Feature::new(
         "depth",
         "exponentially, 0 .. 1 from the pixel's nearest to its farthest fragment",
         "peelnet_depth(zeta, extent)",
-        Seen::depth,
+        FragmentMoments::depth,
     ),
-    &Feature::new("fragment_count", "1", "totals.y", |seen| seen.count as f64),
-    &Feature::new("absorbance", "1", "totals.x", |seen| seen.moments[0]),
-    &Feature::new("moment_1", "1", "moments.x", |seen| seen.moments[1]),
-    &Feature::new("moment_2", "1", "moments.y", |seen| seen.moments[2]),
-    &Feature::new("moment_3", "1", "moments.z", |seen| seen.moments[3]),
-    &Feature::new("moment_4", "1", "moments.w", |seen| seen.moments[4]),
+    &Feature::new("fragment_count", "1", "totals.y", |fragment| {
+        fragment.count as f64
+    }),
+    &Feature::new("absorbance", "1", "totals.x", |fragment| {
+        fragment.moments[0]
+    }),
+    &Feature::new("moment_1", "1", "moments.x", |f| f.moments[1]),
+    &Feature::new("moment_2", "1", "moments.y", |f| f.moments[2]),
+    &Feature::new("moment_3", "1", "moments.z", |f| f.moments[3]),
+    &Feature::new("moment_4", "1", "moments.w", |f| f.moments[4]),
 ];
 
 /// The moments of a pixel and a depth.
 #[derive(Debug)]
 pub struct NmtInputs {
     /// The features, in order.
-    pub features: &'static [&'static Feature<Seen>],
+    pub features: &'static [&'static Feature<FragmentMoments>],
 }
 
 impl NetworkInputs for NmtInputs {
@@ -36,19 +40,19 @@ impl NetworkInputs for NmtInputs {
     }
 
     fn transmittances(&self, pixel: &Observed<'_>, network: Forward<'_>) -> Vec<f64> {
-        let all = Seen::all(pixel.fragments, &pixel.warp).into_iter();
-        all.map(|seen| network(&values(self.features, &seen)))
+        let all = FragmentMoments::all(pixel.fragments, &pixel.warp).into_iter();
+        all.map(|fragment| network(&values(self.features, &fragment)))
             .collect()
     }
 
     fn examples(&self, pixel: &PeeledPixel<'_>) -> Examples {
         let fragments = pixel.observed.fragments;
-        let all = Seen::all(fragments, &pixel.observed.warp).into_iter();
+        let all = FragmentMoments::all(fragments, &pixel.observed.warp).into_iter();
         let rows = all.zip(fragments).zip(pixel.transmittance);
-        let rows = rows.map(|((seen, &(_, alpha)), &t)| RowExample {
-            inputs: values(self.features, &seen),
+        let rows = rows.map(|((fragment, &(_, alpha)), &t)| RowExample {
+            inputs: values(self.features, &fragment),
             targets: vec![t.into()],
-            // An error of T is seen as much as the fragment is opaque.
+            // An error of T is fragment as much as the fragment is opaque.
             weight: alpha * alpha,
         });
         Examples::Rows(rows.collect())
@@ -98,9 +102,9 @@ mod tests {
     /// Of a range 1 … e², ζ = ln z − 1.
     fn inputs(points: &[(f32, f32)]) -> Vec<[f64; 7]> {
         let warp = DepthWarp::new(1.0, 2f64.exp());
-        let all = Seen::all(points, &warp);
+        let all = FragmentMoments::all(points, &warp);
         all.iter()
-            .map(|seen| NMT.map(|f| (f.value)(seen)))
+            .map(|fragment| NMT.map(|f| (f.value)(fragment)))
             .collect()
     }
 

@@ -7,7 +7,7 @@ use peelnet_core::{
     methods::{
         known::KnownFragment,
         points,
-        slabs::{self, Between, Design, Layout, Slabs},
+        slabs::{self, Design, Interior, Layout, Slabs},
     },
 };
 
@@ -20,7 +20,7 @@ const OF_ABSORBANCE: &str = "of the absorbance between the slab's ends";
 
 /// How much lies between a slab's ends, where the fragment lies, what is known of the share in front, how far apart the ends are, and how
 /// the absorbances compare.
-pub static NINE: [&Feature<Between>; 9] = [
+pub static NINE: [&Feature<Interior>; 9] = [
     &Feature::new(
         "root_absorbance",
         "root of the absorbance between the slab's ends",
@@ -58,7 +58,7 @@ pub static NINE: [&Feature<Between>; 9] = [
 ];
 
 /// The first five of them.
-pub static FIVE: [&Feature<Between>; 5] = [NINE[0], NINE[1], NINE[2], NINE[3], NINE[4]];
+pub static FIVE: [&Feature<Interior>; 5] = [NINE[0], NINE[1], NINE[2], NINE[3], NINE[4]];
 
 /// What lies between the ends of a slab. The first feature must be the root of its absorbance, the fourth and fifth the bounds of the
 /// share in front.
@@ -67,7 +67,7 @@ pub struct SlabInputs {
     /// What is kept of a pixel.
     pub design: Design,
     /// The features, in order.
-    pub features: &'static [&'static Feature<Between>],
+    pub features: &'static [&'static Feature<Interior>],
 }
 
 impl SlabInputs {
@@ -78,7 +78,7 @@ impl SlabInputs {
         layout.expect("recipes that are exported keep what a layout holds")
     }
 
-    fn known(&self, pixel: &Observed<'_>) -> Vec<KnownFragment<Between>> {
+    fn known(&self, pixel: &Observed<'_>) -> Vec<KnownFragment<Interior>> {
         slabs::known_fragments(pixel.fragments, &pixel.warp, self.design, pixel.precision)
     }
 }

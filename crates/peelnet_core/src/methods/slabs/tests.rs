@@ -103,7 +103,7 @@ fn depths_that_are_rounded_otherwise_are_known_still() {
 #[test]
 fn bounds_hold() {
     const MOST: f32 = 0.6;
-    let level = (1.0 + absorbance(MOST)).powi(2) / f64::from(FAR_END.alphas - 1);
+    let level = (1.0 + absorbance(MOST)).powi(2) / f64::from(FARTHEST_CODE.alphas - 1);
     let limit = 4.0 * 0.5 * level;
     let mut random = Random::new(7, &[]);
     let (mut guessed, mut width, mut unbounded) = (0, 0.0, 0.0);

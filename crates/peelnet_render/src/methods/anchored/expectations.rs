@@ -14,7 +14,7 @@ pub(super) const ANCHORED: Expectations = Expectations {
         let model = p.model?;
         let inputs = model.meta.recipe.inputs.downcast::<AnchoredInputs>()?;
         let (fragments, c0) = (p.fragments, p.background);
-        let (apart, share) = (inputs.separate_ends, |rest: &_| {
+        let (apart, share) = (inputs.separate_extremes, |rest: &_| {
             model.answer(inputs.features, rest)
         });
         Some(anchored::composite(fragments, c0, &p.warp, apart, share))

@@ -65,7 +65,7 @@ fn settings(spec: &MethodSpec) -> Settings {
             None if half_statistics(spec) => of_half,
             _ => bias.number(spec),
         },
-        own_share_out: own_out(spec),
+        own_absorbance_out: own_out(spec),
         ..paper
     }
 }
@@ -160,7 +160,7 @@ fn passes(p: &mut Passes<'_>) {
         .writes(written.drain(..));
     }
     p.geometry(&format!("methods::mboit::{folder}::gather"), Needs::COLOR)
-        .features(own_share(settings.own_share_out))
+        .features(own_share(settings.own_absorbance_out))
         .features((number == 3).then_some("upper"))
         .reads(found)
         .writes([sums]);

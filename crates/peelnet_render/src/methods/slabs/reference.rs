@@ -4,13 +4,13 @@ use super::{RANGE, plain_layout};
 use crate::methods::{MethodSpec, Pixel};
 use peelnet_core::{
     absorbance::DepthWarp,
-    methods::slabs::{self, Between, Design, Extent},
+    methods::slabs::{self, Design, Extent, Interior},
     statistics::SumPrecision,
 };
 use peelnet_model::{Model, inputs::SlabInputs};
 
 /// A guess of where between its bounds the share lies that is in front of a fragment.
-type Guess<'m> = Box<dyn Fn(&Between) -> f64 + 'm>;
+type Guess<'m> = Box<dyn Fn(&Interior) -> f64 + 'm>;
 
 /// What the CPU reference keeps and guesses. Lists of fragments have no boxes: what is drawn with them has no reference.
 fn design_and_guess<'m>(
