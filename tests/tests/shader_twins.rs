@@ -10,11 +10,12 @@ use peelnet_core::{
     weights::Weight,
 };
 use peelnet_model::{
-    Model, Recipe,
+    Recipe,
     inputs::{ANCHORED, DFAOIT, Feature, NINE, NMT, THESIS, values},
 };
 use peelnet_render::gpu::Gpu;
 use peelnet_tests::{HALF, gpu};
+use std::collections::BTreeSet;
 
 /// Runs `body` (WGSL statements that read `x = inputs[i]` and set `y`) for every input, with features of the shaders.
 fn evaluate(
@@ -160,15 +161,28 @@ fn compare_features<C>(
         let (shared, wgsl) = (shared.unwrap_or_default(), feature.about.wgsl);
         body += &format!("{{ {shared} outputs[id.x * {count}u + {k}u] = {wgsl}; }}");
     }
+    let surroundings = recipe.inputs.surroundings();
+    let mut modules: BTreeSet<&str> = surroundings.modules.iter().copied().collect();
+    modules.extend(features.iter().filter_map(|f| f.about.shared?.module));
+    let modules = modules.into_iter();
+    let modules: String = modules
+        .map(|module| peelnet_render::shaders::source(module).unwrap())
+        .collect();
+    let answer = if recipe.output.count() == 1 {
+        "f32"
+    } else {
+        "vec3f"
+    };
     let driver = format!(
-        "{}
+        "{modules}
+        fn peelnet_network({}) -> {answer} {{ return {answer}(); }}
         @group(0) @binding(0) var<storage, read> inputs: array<f32>;
         @group(0) @binding(1) var<storage, read_write> outputs: array<f32>;
         @compute @workgroup_size(64)
         fn main(@builtin(global_invocation_id) id: vec3u) {{
             if id.x < arrayLength(&outputs) / {count}u {{ {body} }}
         }}",
-        peelnet_export::wgsl(&Model::shipped(recipe).unwrap()).unwrap()
+        surroundings.parameters
     );
     let threads = known.len() as u32;
     let found: Vec<f32> = gpu()

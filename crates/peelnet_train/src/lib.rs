@@ -7,6 +7,9 @@
 //!                                                                        loop ─► checkpoint, model file
 //! ```
 //!
+//! The modules in the order of the work: `loader` (`examples`, `table`, `scratch`), `sampler`, `loss` (`network`, `normalise`), `optimizer`,
+//! `training_loop` (`checkpoint`, `report`).
+//!
 //! [`train`] takes the examples of datasets ([`TrainingData`]) and a [`Config`] that holds every hyper-parameter and
 //! the seed. It sets the held-out rows aside, computes each input's mean and deviation over the training rows, and
 //! runs epochs: the examples are permuted (an order drawn from the seed and the epoch's number), batches are slices
