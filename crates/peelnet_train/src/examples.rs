@@ -6,8 +6,8 @@ use peelnet_dataset::{Column, Dataset, DatasetError, FragmentBatch, Part, Split,
 use peelnet_model::Recipe;
 use peelnet_model::inputs::{Examples, FragmentExample, Observed, PeeledPixel};
 
+use crate::draws::Sample;
 use crate::error::TrainError;
-use crate::sampler::Sample;
 use crate::table::{ALPHA, COLOR, EXACT, KNOWN, LEFT, RESIDUAL, SUM, TrainingData};
 
 const ROWS_AT_A_TIME: usize = 1 << 16;

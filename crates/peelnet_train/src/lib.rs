@@ -73,6 +73,7 @@
 
 mod checkpoint;
 mod config;
+mod draws;
 mod error;
 mod examples;
 mod loader;

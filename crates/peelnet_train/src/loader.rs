@@ -9,9 +9,9 @@ use peelnet_dataset::{Dataset, Part, Split, SplitBy, Subset};
 use peelnet_model::{DatasetRef, Model};
 
 use crate::config::Config;
+use crate::draws::Sample;
 use crate::error::TrainError;
 use crate::examples::{View, each_pixel, gather};
-use crate::sampler::Sample;
 use crate::scratch::Scratch;
 use crate::table::{DataSplit, TrainingData, UsedRows};
 

@@ -5,7 +5,7 @@ use burn::tensor::{Gradients, Tensor};
 use peelnet_core::mlp::{Activation, Layer, Mlp};
 
 use crate::config::Config;
-use crate::sampler::Stream;
+use crate::draws::Stream;
 
 /// Widths and activations.
 ///
