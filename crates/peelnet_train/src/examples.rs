@@ -1,10 +1,11 @@
 //! From views of a dataset to the examples of a recipe.
 
 use peelnet_core::absorbance::DepthWarp;
+use peelnet_core::methods::known::KnownFragment;
 use peelnet_core::statistics::SumPrecision;
 use peelnet_dataset::{Column, Dataset, DatasetError, FragmentBatch, Part, Split, Subset};
 use peelnet_model::Recipe;
-use peelnet_model::inputs::{Examples, FragmentExample, Observed, PeeledPixel};
+use peelnet_model::inputs::{Examples, Observed, PeeledPixel};
 
 use crate::draws::Sample;
 use crate::error::TrainError;
@@ -181,7 +182,7 @@ fn pixel_example(
     pixel: &PeeledPixel<'_>,
     subset: Subset,
     apart: bool,
-    fragments: &[FragmentExample],
+    fragments: &[KnownFragment<Vec<f64>>],
 ) {
     let guessed = fragments.iter().filter(|f| f.unknown.is_some()).count();
     // Exact whatever the network says: nothing to learn.
@@ -194,11 +195,12 @@ fn pixel_example(
     for (i, exact) in pixel.contributions().enumerate() {
         let (fragment, color) = (&fragments[i], pixel.colors[i]);
         // What is known of its weight goes with its opacity.
-        let a = f64::from(pixel.observed.fragments[i].1) * fragment.weight;
-        if let Some((absorbance, inputs)) = &fragment.unknown {
+        let a = f64::from(pixel.observed.fragments[i].1) * fragment.weight(|_| 0.0);
+        if let Some(inputs) = &fragment.unknown {
+            let [low, high] = fragment.bounds;
             data.push_row(inputs.iter().copied(), [exact]);
             if let Some(pixels) = &mut data.pixels {
-                pixels.rows[RESIDUAL].push(*absorbance as f32);
+                pixels.rows[RESIDUAL].push((fragment.absorbance * (high - low)) as f32);
                 pixels.rows[ALPHA].push(a as f32);
                 for (column, c) in pixels.rows[COLOR..].iter_mut().zip(color) {
                     column.push(c);

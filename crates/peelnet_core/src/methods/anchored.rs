@@ -11,10 +11,7 @@ use crate::{
     absorbance::{DepthWarp, absorbance},
     fragment::{Fragment, points},
     guards::FILL_MAX,
-    methods::{
-        known::{KnownFragment, Unknown},
-        moments::power::four_moment_bounds,
-    },
+    methods::{known::KnownFragment, moments::power::four_moment_bounds},
     statistics::{
         self, DEPTH_CODES, FARTHEST_CODE, NEAREST_CODE, SAME_CODE, Statistics, SumPrecision,
         depth_code, zeta_of_code,
@@ -94,12 +91,6 @@ impl Residual {
     }
 }
 
-impl Unknown for Residual {
-    fn absorbance(&self) -> f64 {
-        self.absorbance
-    }
-}
-
 /// What is known of each fragment of a pixel, in the order given: fragments are (linear depth, α). The unknown is all fragments but
 /// this one and the ends.
 pub fn known_fragments(
@@ -129,15 +120,11 @@ pub fn known_fragments(
             let code = depth_code(zeta);
             let (own_near, own_far) =
                 (NEAREST_CODE.mirrored(zeta, b), FARTHEST_CODE.level(zeta, b));
-            let known = |front| KnownFragment {
-                front,
-                unknown: None,
-            };
             if is_visible && code <= first + SAME_CODE {
-                return known(0.0);
+                return KnownFragment::known(0.0);
             }
             if is_visible && own_far == far {
-                return known(s.without(&[(b, zeta)])[0]);
+                return KnownFragment::known(s.without(&[(b, zeta)])[0]);
             }
             // An end that does not lie on its side of the fragment, or whose place in the target the fragment took itself (a
             // more opaque one in the same bin), stays with the rest.
@@ -152,9 +139,12 @@ pub fn known_fragments(
                 0.0
             };
             let rest = s.without(&[(b, zeta), (front, s.nearest), (back, s.farthest)]);
+            let residual = Residual::new(&s, &rest, zeta);
             KnownFragment {
                 front,
-                unknown: Some(Residual::new(&s, &rest, zeta)),
+                absorbance: residual.absorbance,
+                bounds: [0.0, 1.0],
+                unknown: Some(residual),
             }
         })
         .collect()

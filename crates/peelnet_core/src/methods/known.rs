@@ -1,31 +1,43 @@
 //! What is known of a fragment's weight before a network is asked.
 
-/// Absorbance of which an unknown fraction lies in front of a fragment.
-pub trait Unknown {
-    fn absorbance(&self) -> f64;
-
-    /// The least and the most of the fraction.
-    fn bounds(&self) -> [f64; 2] {
-        [0.0, 1.0]
-    }
-}
-
-/// What the last pass knows of a fragment.
+/// What the last pass knows of a fragment; `U` is what a network reads of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct KnownFragment<U> {
     /// Absorbance that is known to lie in front.
     pub front: f64,
-    /// What else may; none where the weight is known.
+    /// Absorbance of which an unknown fraction lies in front, the least and the most of it.
+    pub absorbance: f64,
+    pub bounds: [f64; 2],
+    /// None where the weight is known.
     pub unknown: Option<U>,
 }
 
-impl<U: Unknown> KnownFragment<U> {
+impl<U> KnownFragment<U> {
+    /// One whose weight is known.
+    pub const fn known(front: f64) -> Self {
+        Self {
+            front,
+            absorbance: 0.0,
+            bounds: [0.0, 1.0],
+            unknown: None,
+        }
+    }
+
     /// The weight, given where between its bounds the fraction lies that is in front, 0 … 1.
     pub fn weight(&self, guess: impl FnOnce(&U) -> f64) -> f64 {
-        let unknown = self.unknown.as_ref().map_or(0.0, |unknown| {
-            let [low, high] = unknown.bounds();
-            unknown.absorbance() * (low + (high - low) * guess(unknown))
-        });
+        let [low, high] = self.bounds;
+        let unknown = self.unknown.as_ref();
+        let unknown = unknown.map_or(0.0, |u| self.absorbance * (low + (high - low) * guess(u)));
         (-(self.front + unknown)).exp()
+    }
+
+    /// The same, of which a network reads something else.
+    pub fn map<V>(self, read: impl FnOnce(&U) -> V) -> KnownFragment<V> {
+        KnownFragment {
+            front: self.front,
+            absorbance: self.absorbance,
+            bounds: self.bounds,
+            unknown: self.unknown.as_ref().map(read),
+        }
     }
 }

@@ -8,12 +8,7 @@
 //! Three geometry passes: the range, the sums and records, the colours. Records are levels of depth and opacity under MAX blending
 //! ([`ExtremeCode`]). The shader twin is `learned/slabs.wgsl`, with the file of a [`Layout`], such as `slabs_small.wgsl`.
 
-use super::{
-    Point,
-    anchored::composite_weighted,
-    known::{KnownFragment, Unknown},
-    point, points,
-};
+use super::{Point, anchored::composite_weighted, known::KnownFragment, point, points};
 use crate::{
     absorbance::DepthWarp,
     fragment::Fragment,
@@ -239,16 +234,6 @@ pub struct Interior {
     pub nearest: f64,
 }
 
-impl Unknown for Interior {
-    fn absorbance(&self) -> f64 {
-        self.absorbance
-    }
-
-    fn bounds(&self) -> [f64; 2] {
-        self.bounds
-    }
-}
-
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Slabs {
     design: Design,
@@ -324,14 +309,13 @@ impl Slabs {
             None
         };
         if let Some(inside) = known {
-            return KnownFragment {
-                front: before + inside,
-                unknown: None,
-            };
+            return KnownFragment::known(before + inside);
         }
         let between = self.between(&place, slab, others);
         KnownFragment {
             front: before + between.nearest,
+            absorbance: between.absorbance,
+            bounds: between.bounds,
             unknown: Some(between),
         }
     }

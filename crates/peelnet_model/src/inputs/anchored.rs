@@ -70,21 +70,17 @@ impl NetworkInputs for AnchoredInputs {
         }
     }
 
-    fn transmittances(&self, pixel: &Observed<'_>, network: Forward<'_>) -> Vec<f64> {
-        fraction_transmittances(&known(pixel), self.features, network)
-    }
-
-    fn examples(&self, pixel: &PeeledPixel<'_>) -> Examples {
-        fraction_examples(&known(&pixel.observed), self.features)
+    fn known(&self, pixel: &Observed<'_>) -> Vec<KnownFragment<Vec<f64>>> {
+        let known = anchored::known_fragments(pixel.fragments, &pixel.warp, pixel.precision);
+        let known = known.into_iter();
+        known
+            .map(|f| f.map(|residual| values(self.features, residual)))
+            .collect()
     }
 
     fn known_apart(&self) -> bool {
         self.separate_extremes
     }
-}
-
-fn known(pixel: &Observed<'_>) -> Vec<KnownFragment<Residual>> {
-    anchored::known_fragments(pixel.fragments, &pixel.warp, pixel.precision)
 }
 
 static ONE_SUM: Surroundings = Surroundings {

@@ -13,9 +13,7 @@ mod thesis;
 pub use anchored::*;
 pub use dfaoit::*;
 pub use feature::{About, Feature, Shared, values};
-pub use network_inputs::{
-    Examples, Forward, FragmentExample, NetworkInputs, Observed, PeeledPixel, RowExample,
-};
+pub use network_inputs::{Examples, Forward, NetworkInputs, Observed, PeeledPixel, RowExample};
 pub use nmt::*;
 pub use slabs::*;
 pub use surroundings::{Blend, Pass, Surroundings, Target, Value, ValueKind};

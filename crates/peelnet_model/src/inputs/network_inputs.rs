@@ -1,13 +1,10 @@
 //! All that differs between kinds of inputs.
 
-use super::{
-    feature::{About, Feature, values},
-    surroundings::Surroundings,
-};
+use super::{feature::About, surroundings::Surroundings};
 use peelnet_core::{
     absorbance::DepthWarp,
     methods::{
-        known::{KnownFragment, Unknown},
+        known::KnownFragment,
         moments::{self, Settings},
     },
     statistics::SumPrecision,
@@ -22,14 +19,21 @@ pub trait NetworkInputs: Any + fmt::Debug + Sync {
     /// What surrounds the network in an exported text, and what a renderer does around that text.
     fn surroundings(&self) -> &'static Surroundings;
 
-    /// The weight of every fragment of a pixel, an estimate of the transmittance in front of it, in the fragments' order. Empty where the
-    /// network predicts none.
-    fn transmittances(&self, _pixel: &Observed<'_>, _network: Forward<'_>) -> Vec<f64> {
+    /// What is known of each fragment of a pixel, in the fragments' order, and the raw inputs where the network says a fraction.
+    fn known(&self, _pixel: &Observed<'_>) -> Vec<KnownFragment<Vec<f64>>> {
         Vec::new()
     }
 
+    /// The weight of every fragment of a pixel, an estimate of the transmittance in front of it. Empty where the network predicts none.
+    fn transmittances(&self, pixel: &Observed<'_>, network: Forward<'_>) -> Vec<f64> {
+        let known = self.known(pixel).into_iter();
+        known.map(|f| f.weight(|inputs| network(inputs))).collect()
+    }
+
     /// What a recipe learns from a pixel.
-    fn examples(&self, pixel: &PeeledPixel<'_>) -> Examples;
+    fn examples(&self, pixel: &PeeledPixel<'_>) -> Examples {
+        Examples::Pixel(self.known(&pixel.observed))
+    }
 
     /// Whether the inputs are columns of a dataset as they are: the network is evaluated in 32 bits as published, examples have no weights,
     /// and nothing depends on warped depth.
@@ -128,7 +132,7 @@ pub enum Examples {
     /// Every row is an example.
     Rows(Vec<RowExample>),
     /// The pixel is one example: all of its fragments, nearest first.
-    Pixel(Vec<FragmentExample>),
+    Pixel(Vec<KnownFragment<Vec<f64>>>),
 }
 
 /// An example that is a row.
@@ -140,42 +144,4 @@ pub struct RowExample {
     pub targets: Vec<f64>,
     /// Weight of the row's loss.
     pub weight: f32,
-}
-
-/// A fragment of a pixel that is an example.
-#[derive(Clone, Debug, PartialEq)]
-pub struct FragmentExample {
-    /// The fragment's weight with the least of the unknown in front.
-    pub weight: f64,
-    /// Absorbance that the network says a fraction of, and raw inputs; none where the weight is known.
-    pub unknown: Option<(f64, Vec<f64>)>,
-}
-
-/// The transmittances of fragments whose unknown a network says a fraction of.
-pub(super) fn fraction_transmittances<U: Unknown>(
-    known: &[KnownFragment<U>],
-    features: &[&Feature<U>],
-    network: Forward<'_>,
-) -> Vec<f64> {
-    let answer = |unknown: &U| network(&values(features, unknown));
-    known.iter().map(|f| f.weight(answer)).collect()
-}
-
-/// The example of a pixel of such fragments.
-pub(super) fn fraction_examples<U: Unknown>(
-    known: &[KnownFragment<U>],
-    features: &[&Feature<U>],
-) -> Examples {
-    let unknown = |unknown: &U| {
-        let [low, high] = unknown.bounds();
-        (
-            unknown.absorbance() * (high - low),
-            values(features, unknown),
-        )
-    };
-    let example = |f: &KnownFragment<U>| FragmentExample {
-        weight: f.weight(|_| 0.0),
-        unknown: f.unknown.as_ref().map(unknown),
-    };
-    Examples::Pixel(known.iter().map(example).collect())
 }

@@ -77,10 +77,6 @@ impl SlabInputs {
         let layout = self.design.layout();
         layout.expect("recipes that are exported keep what a layout holds")
     }
-
-    fn known(&self, pixel: &Observed<'_>) -> Vec<KnownFragment<Interior>> {
-        slabs::known_fragments(pixel.fragments, &pixel.warp, self.design, pixel.precision)
-    }
 }
 
 impl NetworkInputs for SlabInputs {
@@ -92,12 +88,13 @@ impl NetworkInputs for SlabInputs {
         slab_surroundings(self.layout())
     }
 
-    fn transmittances(&self, pixel: &Observed<'_>, network: Forward<'_>) -> Vec<f64> {
-        fraction_transmittances(&self.known(pixel), self.features, network)
-    }
-
-    fn examples(&self, pixel: &PeeledPixel<'_>) -> Examples {
-        fraction_examples(&self.known(&pixel.observed), self.features)
+    fn known(&self, pixel: &Observed<'_>) -> Vec<KnownFragment<Vec<f64>>> {
+        let (warp, design) = (&pixel.warp, self.design);
+        let known = slabs::known_fragments(pixel.fragments, warp, design, pixel.precision);
+        let known = known.into_iter();
+        known
+            .map(|f| f.map(|interior| values(self.features, interior)))
+            .collect()
     }
 
     fn known_apart(&self) -> bool {
