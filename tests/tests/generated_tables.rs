@@ -1,15 +1,22 @@
-//! Tables in the documents are those of the committed results, and of the dataset's columns.
+//! Tables in the documents are those of the committed results and of the code.
 //!
 //! `<!-- table of FILE | column; … | row; … -->` and `<!-- end of table -->` enclose columns of FILE's first table, in the order given,
 //! and of its rows those whose first cell is listed, or all where the third part is absent. `PEELNET_UPDATE=1` writes them again.
-//! `<!-- table of columns -->` and `<!-- end of table -->` enclose a list of the columns of [`peelnet_dataset::Column`].
+//! `<!-- table of columns -->` and `<!-- end of table -->` enclose a list of the columns of [`peelnet_dataset::Column`];
+//! with `effects` the table of [`peelnet_scene::EFFECTS`].
 
+use peelnet_scene::{EFFECTS, Effect};
 use std::{
     fs,
     path::{Path, PathBuf},
 };
 
-const PAGES: [&str; 3] = ["README.md", "docs/benchmarks.md", "docs/python.md"];
+const PAGES: [&str; 4] = [
+    "README.md",
+    "docs/benchmarks.md",
+    "docs/effects.md",
+    "docs/python.md",
+];
 const BEGIN: &str = "<!-- table of ";
 const END: &str = "<!-- end of table -->";
 
@@ -26,10 +33,20 @@ fn cells(line: &str) -> Vec<&str> {
     inner.split('|').map(str::trim).collect()
 }
 
+/// The table of effects.
+fn effects() -> String {
+    let row = |e: &Effect| format!("| `{}` | {} | {} |\n", e.name, e.needed_by, e.adds);
+    let rows: String = EFFECTS.iter().map(row).collect();
+    format!("| effect | needed by | adds |\n|---|---|---|\n{rows}")
+}
+
 /// The table that a marker's text, without its brackets, asks for.
 fn table(marker: &str) -> String {
     if marker == "columns" {
         return format!("\n{}\n", peelnet_dataset::column_docs!());
+    }
+    if marker == "effects" {
+        return effects();
     }
     let parts: Vec<&str> = marker.split(" | ").map(str::trim).collect();
     let text = read(parts[0]);

@@ -12,7 +12,7 @@ use crate::{
 use glam::{Mat4, Vec3};
 use peelnet_render::gpu::Gpu;
 use peelnet_render::{LayerFormula, LayerView, MethodOptions, MethodSpec, Profile, milliseconds};
-use peelnet_scene::{Camera, Census, Effect, Scene};
+use peelnet_scene::{Camera, Effect, MaterialFlags, Scene, SceneFeatures};
 use std::{
     path::{Path, PathBuf},
     sync::{Arc, atomic::AtomicBool},
@@ -35,7 +35,7 @@ pub const FILLED: [f64; 3] = [0.5, 0.75, 1.0];
 pub fn cost(
     gpu: &Gpu,
     scene: &Scene,
-    effect: Effect,
+    effect: &Effect,
     settings: &Settings,
     folder: Option<&Path>,
 ) -> Result<Cost, EvalError> {
@@ -49,14 +49,14 @@ pub fn cost(
         bytes[k] = drawn.stats.bytes_per_pixel;
         passes[k] = drawn.stats.geometry_passes + drawn.stats.fullscreen_passes;
         if let Some(folder) = folder {
-            let file = picture_of(folder, &scene.name, effect.name(), k == 0);
+            let file = picture_of(folder, &scene.name, effect.name, k == 0);
             drawn.image.save(&file).map_err(stage.failed(&name))?;
         }
     }
     let ms = times(stages, &scene.views[0], settings.frames)?;
     Ok(Cost {
         scene: scene.name.clone(),
-        effect: effect.name().to_owned(),
+        effect: effect.name.to_owned(),
         ms_with: ms[0],
         ms_without: ms[1],
         ratio: ms[0] / ms[1],
@@ -69,9 +69,9 @@ pub fn cost(
 
 /// Times shading alone, transparency alone and both together, of a scene that has both: `None` of any other.
 fn parts(gpu: &Gpu, scene: &Scene, settings: &Settings) -> Result<Option<Parts>, EvalError> {
-    let census = Census::of(scene);
-    let lit = census.has(Effect::Lighting) || census.has(Effect::Pbr);
-    if !lit || scene.transparent_bounds().is_none() {
+    let mut variants = SceneFeatures::new(scene).variants.into_iter();
+    let is_lit = variants.any(|flags| flags.contains(MaterialFlags::LIT));
+    if !is_lit || scene.transparent_bounds().is_none() {
         return Ok(None);
     }
     let (opaque, unlit) = (scene.opaque(), scene.unlit());
@@ -227,8 +227,7 @@ pub fn measure(
         watch.check()
     };
     for scene in scenes {
-        let census = Census::of(scene);
-        for effect in Effect::ALL.into_iter().filter(|e| census.has(*e)) {
+        for effect in SceneFeatures::new(scene).effects_on() {
             next(scene, effect.to_string())?;
             let cost = cost(gpu, scene, effect, settings, Some(folder))?;
             found.costs.push(cost);

@@ -12,7 +12,7 @@ use peelnet_dataset::{
 };
 use peelnet_render::geometry::PixelSample;
 use peelnet_render::gpu::Gpu;
-use peelnet_scene::{Census, Scene};
+use peelnet_scene::{Scene, SceneFeatures};
 use std::{
     collections::BTreeMap,
     mem,
@@ -398,8 +398,8 @@ fn settings(items: &[Part], options: &ExtractOptions) -> BTreeMap<String, String
 }
 
 fn scene_entry(scene: &Scene) -> SceneEntry {
-    let census = Census::of(scene);
-    let effects = census.effects.iter().filter(|e| e.on);
+    let features = SceneFeatures::new(scene);
+    let effects = features.effects.iter().filter(|e| e.on);
     SceneEntry {
         name: scene.name.clone(),
         file: scene.source.display().to_string(),

@@ -207,8 +207,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     );
     for name in ["sixteen-050", "smoke-30", "panes"] {
         // Unlit, two-sided, without anything opaque.
-        let scene = [Effect::Opaque, Effect::Lighting, Effect::Culling]
+        let scene = ["opaque", "lighting", "culling"]
             .into_iter()
+            .filter_map(Effect::find)
             .fold(suite::load(name)?, |scene, effect| scene.without(effect));
         let camera = scene.views[0];
         let plain = Plain::new(&gpu, &scene)?;

@@ -8,7 +8,7 @@ use crate::{
     budget::{Budget, MAX_TRIANGLES},
     material::Material,
     mesh::{Mesh, area_of, key_of},
-    texture::{Texture, Wrap},
+    texture::{Displacement, Texture, Wrap},
 };
 use glam::{DVec3, Quat, Vec2, Vec3};
 use std::{collections::HashMap, sync::Arc};
@@ -24,19 +24,6 @@ const MOST_CUTS: u32 = 6;
 
 /// Lengths beyond this overflow when they are squared.
 const LONGEST: f32 = 1e15;
-
-/// How far a texture moves a surface along its normals.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Displacement {
-    /// Its luminance is a height of 0 … 1.
-    pub map: Arc<Texture>,
-    /// How far white rises over black, object space.
-    pub scale: f32,
-    /// The height that stays where it is.
-    pub middle: f32,
-    /// How often every triangle is cut into four; by default until no edge spans more than two texels, six times at most.
-    pub level: Option<u32>,
-}
 
 impl Displacement {
     /// How far the surface moves at a place of the texture.

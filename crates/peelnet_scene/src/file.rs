@@ -6,6 +6,7 @@ mod materials;
 mod mesh_scene;
 mod objects;
 pub(crate) mod raw;
+pub(crate) mod reference;
 mod timeline;
 mod views;
 

@@ -22,9 +22,10 @@
 
 mod budget;
 mod camera;
-mod census;
 mod displacement;
+mod effects;
 mod error;
+mod features;
 pub mod file;
 mod files;
 mod import;
@@ -43,10 +44,10 @@ mod warnings;
 
 pub use budget::MAX_LIGHTS;
 pub use camera::Camera;
-pub use census::{Census, Effect, Setting, Variant};
-pub use displacement::Displacement;
+pub use effects::{EFFECTS, Effect, MaterialFlags};
 pub use error::SceneError;
-pub use material::{Lighting, Material};
+pub use features::{SceneFeature, SceneFeatures};
+pub use material::{Control, Lighting, Material, NUMBERS, Number, SHADER_NUMBERS};
 pub use mesh::{BOX_MARGIN, Mesh, Part};
 pub use scene::{Light, Object, Scene, Source, State};
-pub use texture::{Maps, Texture, Wrap};
+pub use texture::{Displacement, Maps, Texture, Wrap};

@@ -2,7 +2,7 @@
 
 use crate::{
     error::{Fault, check_color, require, within},
-    file::raw::{MapRef, MeshRef},
+    file::{raw::MeshRef, reference::MapRef},
     material::Lighting,
 };
 use glam::{Mat4, Quat, Vec3};

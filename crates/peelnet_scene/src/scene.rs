@@ -207,9 +207,13 @@ impl Scene {
 
     fn with_materials(&self, change: impl FnMut(&mut Material)) -> Self {
         let mut scene = self.clone();
-        let materials = scene.objects.iter_mut().flat_map(|o| &mut o.materials);
-        materials.for_each(change);
+        scene.change_materials(change);
         scene
+    }
+
+    pub(crate) fn change_materials(&mut self, change: impl FnMut(&mut Material)) {
+        let materials = self.objects.iter_mut().flat_map(|o| &mut o.materials);
+        materials.for_each(change);
     }
 
     /// The scene with every surface as opaque as before, and unlit: what transparency takes without shading. Colour maps stay, because

@@ -2,7 +2,7 @@
 
 mod decode;
 
-use crate::{budget::Budget, displacement::Displacement};
+use crate::budget::Budget;
 use rayon::prelude::*;
 use serde::Deserialize;
 use std::{borrow::Cow, sync::Arc};
@@ -63,6 +63,19 @@ pub struct Maps {
     pub wrap: [Wrap; 2],
     /// Whether a magnified texture shows its texels as squares.
     pub nearest: bool,
+}
+
+/// How far a texture moves a surface along its normals.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Displacement {
+    /// Its luminance is a height of 0 … 1.
+    pub map: Arc<Texture>,
+    /// How far white rises over black, object space.
+    pub scale: f32,
+    /// The height that stays where it is.
+    pub middle: f32,
+    /// How often every triangle is cut into four; by default until no edge spans more than two texels, six times at most.
+    pub level: Option<u32>,
 }
 
 impl Maps {

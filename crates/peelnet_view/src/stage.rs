@@ -87,8 +87,8 @@ pub(crate) struct Shown {
     pub layers: Option<LayerView>,
     /// With layers: whether all of them are shaded, to see what that costs; by default the highlighted one alone is.
     pub shade_all: bool,
-    /// Effects that are left out.
-    pub off: Vec<Effect>,
+    /// Names of effects that are left out.
+    pub off: Vec<&'static str>,
 }
 
 /// What a picture shows, whatever the method.
@@ -190,8 +190,8 @@ impl Stage {
     /// Draws a scene, or a part of it; where that fails, all stays as it was.
     fn show(&mut self, scene: Scene, shown: Shown) -> Fallible<()> {
         let mut drawn = scene.clone();
-        for effect in &shown.off {
-            drawn = drawn.without(*effect);
+        for effect in shown.off.iter().copied().filter_map(Effect::find) {
+            drawn = drawn.without(effect);
         }
         if let Some(layers) = shown.layers {
             drawn = drawn.layer_view(layers.highlight, shown.shade_all)?;

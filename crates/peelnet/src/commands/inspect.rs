@@ -7,7 +7,7 @@ use peelnet_core::files::{counted, one_line, printable, shown, thousands};
 use peelnet_dataset::{Dataset, Summary, is_remote};
 use peelnet_model::Model;
 use peelnet_render::{FrameStats, MethodOptions, MethodSpec, Renderer, shader_bytes};
-use peelnet_scene::{Census, Effect, Scene, file::ENDINGS, suite};
+use peelnet_scene::{EFFECTS, Scene, SceneFeatures, file::ENDINGS, suite};
 use serde_json::json;
 use std::{collections::HashMap, path::Path};
 
@@ -69,11 +69,11 @@ fn dataset(context: &Context<'_>, path: &Path) -> Result<(), Failure> {
             m.seed,
             one_line(&m.command)
         );
-        let mut census = m.scenes.iter().filter(|s| !s.effects.is_empty()).peekable();
-        if census.peek().is_some() {
+        let mut scenes = m.scenes.iter().filter(|s| !s.effects.is_empty()).peekable();
+        if scenes.peek().is_some() {
             t += "\neffects that the scenes needed\n";
         }
-        for scene in census {
+        for scene in scenes {
             let (name, effects) = (printable(&scene.name), scene.effects.join(", "));
             t += &format!("  {name:<33} {}\n", one_line(&effects));
         }
@@ -124,12 +124,12 @@ fn scene(context: &Context<'_>, path: &Path, time: bool) -> Result<(), Failure> 
     });
     let shader = shader_bytes(&scene)?;
     // How many of these bytes each effect brings.
-    let brought = Effect::ALL.map(|effect| {
+    let brought = EFFECTS.iter().map(|effect| {
         let without = shader_bytes(&scene.without(effect)).unwrap_or(shader);
-        (effect.name(), shader as i64 - without as i64)
+        (effect.name, shader as i64 - without as i64)
     });
-    let census = Census::of(&scene);
-    let brought = HashMap::from(brought);
+    let brought: HashMap<_, _> = brought.collect();
+    let features = SceneFeatures::new(&scene);
     let mut costs = Vec::new();
     if time {
         let settings = Settings {
@@ -138,22 +138,22 @@ fn scene(context: &Context<'_>, path: &Path, time: bool) -> Result<(), Failure> 
             frames: TIMED_FRAMES,
         };
         let gpu = context.gpu()?;
-        for effect in Effect::ALL.into_iter().filter(|e| census.has(*e)) {
+        for effect in features.effects_on() {
             costs.push(effects::cost(&gpu, &scene, effect, &settings, None)?);
         }
     }
     context.check_interrupt()?;
     let text = || {
-        let head = scene_text(&scene, triangles, &counted, &census, shader);
-        head + &effects_text(&census, &brought) + &costs_text(&costs)
+        let head = scene_text(&scene, triangles, &counted, &features, shader);
+        head + &effects_text(&features, &brought) + &costs_text(&costs)
     };
     context.console.result(text, || {
         json!({
             "kind": "scene",
-            "effects": census.effects,
+            "effects": features.effects,
             "shader_bytes": shader,
             "shader_bytes_brought": brought,
-            "variants": census.variants.iter().map(|v| v.features()).collect::<Vec<_>>(),
+            "variants": features.variants.iter().map(|v| v.features()).collect::<Vec<_>>(),
             "costs": costs,
             "path": json_path(path),
             "name": scene.name,
@@ -186,7 +186,7 @@ fn scene_text(
     scene: &Scene,
     triangles: [u64; 2],
     counted: &FrameStats,
-    census: &Census,
+    features: &SceneFeatures,
     shader: usize,
 ) -> String {
     let [width, height] = COUNTED_AT;
@@ -214,14 +214,14 @@ fn scene_text(
         scene.views.len(),
         scene.lights.len(),
         scene.objects.len(),
-        census.variants.len(),
+        features.variants.len(),
         thousands(shader as u64)
     )
 }
 
-fn effects_text(census: &Census, brought: &HashMap<&str, i64>) -> String {
+fn effects_text(features: &SceneFeatures, brought: &HashMap<&str, i64>) -> String {
     let mut t = "\neffect                  on   needed by\n".to_owned();
-    for effect in &census.effects {
+    for effect in &features.effects {
         let on = if effect.on { "yes" } else { "–" };
         let why = few(&effect.why, 4);
         t += &format!("{:<23} {on:<4} {why}\n", effect.name);

@@ -8,7 +8,7 @@ use peelnet_core::{
     scanline::{self, Hit},
     shading,
 };
-use peelnet_scene::{Camera, Light, Lighting, Material, Object, Scene, Source};
+use peelnet_scene::{Camera, EFFECTS, Effect, Light, Lighting, Material, Object, Scene, Source};
 use std::collections::BTreeMap;
 
 /// How far a vertex may be snapped, in pixels: WebGPU's adapters have a sub-pixel grid of at least 4 bits, and take the nearest of its
@@ -212,7 +212,8 @@ impl<'a> View<'a> {
         Some(Kind::new(name, fragments, background))
     }
 
-    /// The radiance of a surface at a hit; `None` of one with textures, emission, or light that takes a colour.
+    /// The radiance of a surface at a hit; `None` of one with textures, or with an
+    /// effect that a number switches on, as emission.
     fn shade(
         &self,
         hit: &Hit,
@@ -225,7 +226,8 @@ impl<'a> View<'a> {
         let maps = &material.maps;
         let mapped = maps.color.is_some() || maps.normal.is_some();
         let mapped = mapped || !object.mesh.colors.is_empty();
-        if mapped || material.is_emissive() || material.is_transmissive() {
+        let mut numbers = EFFECTS.iter().filter_map(Effect::number);
+        if mapped || numbers.any(|number| !number.is_zero(material)) {
             return None;
         }
         if material.lighting == Lighting::Unlit {

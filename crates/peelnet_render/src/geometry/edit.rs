@@ -6,7 +6,7 @@ use crate::geometry::{
     upload::{ATTRIBUTES, Placement, Vertex, floats},
 };
 use crate::gpu::wgpu;
-use peelnet_scene::{Light, MAX_LIGHTS, Material, Object, Setting, Variant};
+use peelnet_scene::{Light, MAX_LIGHTS, Material, MaterialFlags, Object};
 
 impl SceneBuffers {
     fn object(&mut self, object: usize) -> Result<&mut Object, RenderError> {
@@ -41,7 +41,7 @@ impl SceneBuffers {
             self.gpu.write_at(&self.vertices, first, &vertices);
             part.measure(&vertices);
             // Positions and UVs are the same wherever the object stands.
-            let shares_anew = turned || part.run.variant.has_normal_map();
+            let shares_anew = turned || part.run.variant.contains(MaterialFlags::NORMAL_MAP);
             self.write_attributes(number, shares_anew);
         }
         Ok(())
@@ -109,9 +109,9 @@ impl SceneBuffers {
     /// More than [`MAX_LIGHTS`], or a texture beyond the adapter's limits, of materials that were unlit so far.
     pub fn set_lights(&mut self, lights: Vec<Light>) -> Result<(), RenderError> {
         check_lights(&lights)?;
-        let before = Setting::of(&self.scene);
+        let before = self.scene.light_flags();
         self.scene.lights = lights;
-        if Setting::of(&self.scene) != before {
+        if self.scene.light_flags() != before {
             for number in 0..self.parts.len() {
                 self.specify(number)?;
             }
@@ -129,7 +129,7 @@ impl SceneBuffers {
         let object = &self.scene.objects[object];
         let material = &object.materials[part];
         let triangles = &object.mesh.parts[part].triangles;
-        let variant = Variant::of(material, object, Setting::of(&self.scene));
+        let variant = MaterialFlags::new(material, object, self.scene.light_flags());
         let maps = (self.maps).number(&self.gpu, material, variant, triangles)?;
         let new = (variant, maps, material.is_opaque());
         let part = &mut self.parts[number];
@@ -154,7 +154,9 @@ impl SceneBuffers {
     pub(crate) fn upload_lights(&mut self) -> Result<(), RenderError> {
         check_lights(&self.scene.lights)?;
         let drawn = self.parts.iter().filter(|p| !p.run.vertices.is_empty());
-        let is_lit = drawn.into_iter().any(|p| p.run.variant.is_lit());
+        let is_lit = drawn
+            .into_iter()
+            .any(|p| p.run.variant.contains(MaterialFlags::LIT));
         let lights: Vec<_> = self
             .scene
             .lights

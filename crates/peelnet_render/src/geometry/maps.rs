@@ -6,14 +6,14 @@ use crate::gpu::{
     bind::{Bind, Bound},
     wgpu,
 };
-use peelnet_scene::{Maps, Material, Texture, Variant, Wrap};
+use peelnet_scene::{Maps, Material, MaterialFlags, Texture, Wrap};
 use std::{ops::Range, sync::Arc};
 
 /// The textures that a material binds, and which of them a variant reads.
 #[derive(Debug)]
 struct Set {
     maps: Maps,
-    read: [bool; 5],
+    read: MaterialFlags,
     bound: Bound,
 }
 
@@ -33,13 +33,13 @@ impl MapSets {
         &mut self,
         gpu: &Gpu,
         material: &Material,
-        variant: Variant,
+        variant: MaterialFlags,
         triangles: &Range<usize>,
     ) -> Result<Option<usize>, RenderError> {
-        if !variant.is_mapped() || triangles.is_empty() {
+        if !variant.contains(MaterialFlags::MAPPED) || triangles.is_empty() {
             return Ok(None);
         }
-        let (maps, read) = (&material.maps, variant.maps);
+        let (maps, read) = (&material.maps, variant.maps());
         let same = |set: &Set| {
             let pointers = |maps: &Maps| maps.all().map(|map| map.map(Arc::as_ptr));
             set.read == read
@@ -69,8 +69,9 @@ impl MapSets {
             ..Default::default()
         });
         let mut views = Vec::with_capacity(5);
-        for ((map, srgb), read) in maps.all().into_iter().zip(IS_SRGB).zip(read) {
-            let map = map.filter(|_| read);
+        let flags = MaterialFlags::MAPS.into_iter().zip(IS_SRGB);
+        for (map, (flag, srgb)) in maps.all().into_iter().zip(flags) {
+            let map = map.filter(|_| read.contains(flag));
             views.push(map.map(|map| self.image(gpu, map, srgb)).transpose()?);
         }
         let mut entries = vec![Bind::Sampler(&sampler)];

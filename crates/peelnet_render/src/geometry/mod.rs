@@ -1,7 +1,7 @@
 //! A scene on the GPU, and everything that finds its fragments: below both rendering and peeling.
 //!
 //! [`SceneBuffers::new`] uploads a scene's triangles once, in world space and in one buffer. A [`GeometryPass`] becomes one
-//! pipeline for each [`Variant`](peelnet_scene::Variant) of material, specialised to what the pass reads. [`FrameTargets`] are
+//! pipeline for each [`MaterialFlags`](peelnet_scene::MaterialFlags) of material, specialised to what the pass reads. [`FrameTargets`] are
 //! the targets of one frame size. On top of these stand the passes that more than one method, or the extraction, is built of:
 //! [`count`] (fragments per pixel and their prefix sum), [`sbuffer`] (every fragment stored and sorted), [`single`] and
 //! [`dual`] (depth peeling), [`fullscreen`].

@@ -10,7 +10,7 @@ use crate::gpu::{
     wgpu,
 };
 use crate::shaders::Shader;
-use peelnet_scene::Variant;
+use peelnet_scene::MaterialFlags;
 
 /// Pipelines of one geometry pass: one for each variant of the materials that it draws.
 #[derive(Debug)]
@@ -24,14 +24,14 @@ pub struct GeometryPipelines {
 
 #[derive(Debug)]
 pub(crate) struct OfVariant {
-    variant: Variant,
+    variant: MaterialFlags,
     pub(crate) pipeline: wgpu::RenderPipeline,
     /// Whether it reads the number of a fragment's triangle.
     pub(crate) numbered: bool,
 }
 
 impl GeometryPipelines {
-    pub(crate) fn find(&self, variant: Variant) -> Option<&OfVariant> {
+    pub(crate) fn find(&self, variant: MaterialFlags) -> Option<&OfVariant> {
         self.variants.iter().find(|p| p.variant == variant)
     }
 }
@@ -91,7 +91,7 @@ impl SceneBuffers {
         let (scene_group, runs) = self.half(frame, pass.opaque);
         let mut own_group: Option<Option<Bound>> = None;
         needs::note(pass.shader, pass.features, pass.extra, pass.needs);
-        let mut variants: Vec<(Variant, Option<usize>)> = Vec::new();
+        let mut variants: Vec<(MaterialFlags, Option<usize>)> = Vec::new();
         for run in runs {
             if !variants.iter().any(|(v, _)| *v == run.variant) {
                 variants.push((run.variant, run.maps));
@@ -126,7 +126,7 @@ impl SceneBuffers {
                     &groups,
                     &features,
                     &fragment,
-                    variant.culled,
+                    variant.contains(MaterialFlags::CULLED),
                 )?,
                 numbered: features.contains(&"numbered"),
             });

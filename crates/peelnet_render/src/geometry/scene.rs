@@ -15,7 +15,7 @@ use crate::gpu::{
 };
 use bytemuck::Zeroable;
 use peelnet_core::absorbance::DepthWarp;
-use peelnet_scene::{Camera, Scene, Setting, Variant};
+use peelnet_scene::{Camera, EFFECTS, MaterialFlags, Scene};
 
 /// The order in which the transparent parts of objects are submitted to the GPU. Depths, numbers of triangles and everything that is
 /// computed of them stay as they are: only what depends on the order of drawing may change.
@@ -95,7 +95,7 @@ impl SceneBuffers {
         let what = format!("scene '{}' with {triangles} triangles", scene.name);
         let hint = "split the scene or simplify its meshes";
         gpu.check_limit(what, needed, limit, "bytes", hint)?;
-        let setting = Setting::of(scene);
+        let lights = scene.light_flags();
         let mut attributes: [Vec<f32>; 4] = Default::default();
         let mut maps = MapSets::default();
         let mut vertices = Vec::with_capacity(triangles * 3);
@@ -111,7 +111,7 @@ impl SceneBuffers {
                     material,
                     object.layer.unwrap_or(0),
                 ));
-                let variant = Variant::of(material, object, setting);
+                let variant = MaterialFlags::new(material, object, lights);
                 let begin = vertices.len();
                 vertices.extend(placement.vertices(part.triangles.clone(), index));
                 let of_part = placement.attributes(&part.triangles, variant);
@@ -214,16 +214,13 @@ impl SceneBuffers {
     /// Names of the bindings of the scene that a transparent pass has.
     pub fn bindings(&self) -> Vec<&'static str> {
         let drawn = || self.parts.iter().filter(|p| p.run.maps.is_some());
-        let mapped = |k: usize| drawn().any(|p| p.run.variant.maps[k]);
+        let mapped = |flag: MaterialFlags| drawn().any(|p| p.run.variant.contains(flag));
         let mut names = vec!["camera", "materials"];
         names.extend(self.lights.is_some().then_some("lights"));
         names.extend(self.has_opaque().then_some("opaque depth"));
         names.extend(drawn().next().map(|_| "sampler"));
-        let maps = peelnet_scene::Effect::MAPS.iter().enumerate();
-        names.extend(
-            maps.filter(|(k, _)| mapped(*k))
-                .map(|(_, effect)| effect.name()),
-        );
+        let maps = (EFFECTS.iter()).filter(|e| MaterialFlags::MAPS.contains(&e.flag));
+        names.extend(maps.filter(|e| mapped(e.flag)).map(|e| e.name));
         names
     }
 
@@ -480,14 +477,14 @@ impl PartBuffers {
 /// Bytes of shader text that a scene's surfaces link, without tests of visibility: the opaque pass and one that gathers premultiplied
 /// colour (`blended`), a text for each variant.
 pub fn shader_bytes(scene: &Scene) -> Result<usize, RenderError> {
-    let setting = Setting::of(scene);
+    let lights = scene.light_flags();
     let mut texts: Vec<String> = Vec::new();
     for object in &scene.objects {
         for (part, material) in object.mesh.parts.iter().zip(&object.materials) {
             if part.triangles.is_empty() {
                 continue;
             }
-            let features = Variant::of(material, object, setting).features();
+            let features = MaterialFlags::new(material, object, lights).features();
             let pass = if material.is_opaque() {
                 "scene::opaque"
             } else {

@@ -1,7 +1,7 @@
 //! What shaders read of the scene, field by field: twins of the structs in `shaders/scene`, compared with naga's offsets by a test.
 
 use bytemuck::{Pod, Zeroable};
-use peelnet_scene::{Light, Lighting, Material, Source};
+use peelnet_scene::{Light, Lighting, Material, SHADER_NUMBERS, Source};
 
 /// `Camera` in `scene/camera.wgsl`.
 #[repr(C)]
@@ -29,7 +29,7 @@ pub(crate) struct CameraUniform {
     pub pad: [u32; 2],
 }
 
-/// `Material` in `scene/shade.wgsl`.
+/// `Material` in `scene/material.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub(crate) struct MaterialData {
@@ -38,10 +38,8 @@ pub(crate) struct MaterialData {
     pub shininess_or_roughness: f32,
     pub alpha_cutoff: f32,
     pub layer: f32,
-    pub emission: [f32; 3],
-    pub normal_scale: f32,
-    pub transmission: [f32; 3],
-    pub occlusion_strength: f32,
+    /// The numbers that effects read, by the place that each says.
+    pub numbers: [f32; SHADER_NUMBERS],
 }
 
 impl MaterialData {
@@ -57,10 +55,7 @@ impl MaterialData {
             shininess_or_roughness,
             alpha_cutoff: m.alpha_cutoff.unwrap_or(0.0),
             layer: layer as f32,
-            emission: m.emission,
-            normal_scale: m.maps.normal_scale,
-            transmission: m.transmission,
-            occlusion_strength: m.maps.occlusion_strength,
+            numbers: m.shader_numbers(),
         }
     }
 }
@@ -121,6 +116,7 @@ pub(crate) fn unit_from_depth(far: f32) -> f32 {
 mod tests {
     use super::*;
     use crate::shaders::naga;
+    use peelnet_scene::NUMBERS;
     use std::mem::offset_of;
 
     #[test]
@@ -156,9 +152,10 @@ mod tests {
     }
 
     macro_rules! twin {
-        ($module:expr, $wgsl:literal, $rust:ty, [$($field:ident),*]) => {{
+        ($module:expr, $wgsl:literal, $rust:ty, [$($field:ident),*], $more:expr) => {{
             let (members, span) = members($module, $wgsl);
-            let ours = vec![$((stringify!($field).to_owned(), offset_of!($rust, $field))),*];
+            let mut ours = vec![$((stringify!($field).to_owned(), offset_of!($rust, $field))),*];
+            ours.extend($more);
             assert_eq!(members, ours, "{}", $wgsl);
             assert_eq!(span, size_of::<$rust>(), "size of {}", $wgsl);
         }};
@@ -172,7 +169,14 @@ mod tests {
         let text = shader.expect("links").text.clone();
         let capabilities = naga::valid::Capabilities::empty();
         let (module, _) = crate::shaders::validate("twins", &text, capabilities).expect("valid");
-        twin!(&module, "Light", LightData, [position, is_point, color]);
+        twin!(&module, "Light", LightData, [position, is_point, color], []);
+        let begin = offset_of!(MaterialData, numbers);
+        let placed = NUMBERS.iter().filter_map(|number| {
+            let field = number.field.rsplit('.').next()?.trim();
+            Some((field.to_owned(), begin + number.place? * size_of::<f32>()))
+        });
+        let mut numbers: Vec<(String, usize)> = placed.collect();
+        numbers.sort_by_key(|(_, offset)| *offset);
         twin!(
             &module,
             "Material",
@@ -182,12 +186,9 @@ mod tests {
                 specular_or_metallic,
                 shininess_or_roughness,
                 alpha_cutoff,
-                layer,
-                emission,
-                normal_scale,
-                transmission,
-                occlusion_strength
-            ]
+                layer
+            ],
+            numbers
         );
         twin!(
             &module,
@@ -206,7 +207,8 @@ mod tests {
                 warp_near,
                 warp_scale,
                 window_depth_at_infinity
-            ]
+            ],
+            []
         );
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::gpu::wgpu::{self, vertex_attr_array};
 use bytemuck::{Pod, Zeroable};
-use peelnet_scene::{Object, Variant};
+use peelnet_scene::{MaterialFlags, Object};
 use std::ops::Range;
 
 /// One vertex of a triangle. Every triangle has three of its own: `vertex_index / 3` is then the triangle's index in the scene's
@@ -29,7 +29,7 @@ const MOST_COMPARED: usize = 8;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct DrawRun {
     pub vertices: Range<u32>,
-    pub variant: Variant,
+    pub variant: MaterialFlags,
     /// Number of its textures' set.
     pub maps: Option<usize>,
 }
@@ -88,16 +88,16 @@ impl<'a> Placement<'a> {
     }
 
     /// What a variant reads of these vertices, in the order of [`ATTRIBUTES`]; empty where it reads nothing.
-    pub fn attributes(&self, triangles: &Range<usize>, variant: Variant) -> [Vec<f32>; 4] {
+    pub fn attributes(&self, triangles: &Range<usize>, variant: MaterialFlags) -> [Vec<f32>; 4] {
         let mesh = &self.object.mesh;
         let order = self.order();
         let mut all: [Vec<f32>; 4] = Default::default();
         let [uvs, tangents, colors, normals] = &mut all;
-        if variant.is_mapped() && !mesh.uvs.is_empty() {
+        if variant.contains(MaterialFlags::MAPPED) && !mesh.uvs.is_empty() {
             let of = mesh.uvs[triangles.clone()].iter();
             uvs.extend(of.flat_map(|t| order.map(|k| t[k].to_array())).flatten());
         }
-        if variant.has_normal_map() {
+        if variant.contains(MaterialFlags::NORMAL_MAP) {
             // Tangents turn with the surface, and over with a mirror.
             let sign = if self.mirrored { -1.0 } else { 1.0 };
             let world = self.object.world_from_object;
@@ -111,10 +111,10 @@ impl<'a> Placement<'a> {
                 tangents.extend(of.flatten());
             }
         }
-        if variant.vertex_colors {
+        if variant.contains(MaterialFlags::VERTEX_COLORS) {
             colors.extend(self.indices(triangles.clone()).flat_map(|i| mesh.colors[i]));
         }
-        if variant.is_lit() {
+        if variant.contains(MaterialFlags::LIT) {
             let turned = |i: usize| (self.normal_matrix * mesh.normals[i]).normalize_or_zero();
             let of = self.indices(triangles.clone());
             normals.extend(of.flat_map(|i| turned(i).to_array()));
@@ -180,7 +180,7 @@ pub(crate) fn extend(all: &mut [Vec<f32>; 4], first: usize, part: [Vec<f32>; 4])
 #[cfg(test)]
 mod tests {
     use super::*;
-    use peelnet_scene::{Material, Setting};
+    use peelnet_scene::Material;
 
     fn object(positions: Vec<glam::Vec3>, triangles: Vec<[u32; 3]>) -> Object {
         let mut object = Object::of_triangles("test", &[], Material::unlit([1.0; 3], 0.5));
@@ -242,15 +242,8 @@ mod tests {
     fn runs_join_where_they_can() {
         let material = Material::unlit([1.0; 3], 0.5);
         let object = Object::of_triangles("none", &[], material.clone());
-        let setting = Setting {
-            lit: false,
-            sun: false,
-        };
-        let two_sided = Variant::of(&material, &object, setting);
-        let culled = Variant {
-            culled: true,
-            ..two_sided
-        };
+        let two_sided = MaterialFlags::new(&material, &object, MaterialFlags::empty());
+        let culled = two_sided | MaterialFlags::CULLED;
         let mut runs = Vec::new();
         for (vertices, variant, maps) in [
             (0..3, two_sided, None),

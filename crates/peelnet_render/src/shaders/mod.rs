@@ -235,6 +235,7 @@ pub fn validate(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use peelnet_scene::{EFFECTS, MaterialFlags};
 
     /// A shipped network of the methods in a folder.
     fn learned(folder: &str, features: &[&str]) -> &'static str {
@@ -267,34 +268,23 @@ mod tests {
             .collect()
     }
 
-    /// Features that materials need: some alone, and all of them.
-    const MATERIALS: [&[&str]; 10] = [
-        &["lit", "phong"],
-        &["lit", "pbr"],
-        &["lit", "pbr", "sun"],
-        &["emission"],
-        &["cutout"],
-        &["vertex_colors"],
-        &["mapped", "color_map"],
-        &["mapped", "color_map", "clear_map"],
-        &["transmission"],
-        &[
-            "lit",
-            "pbr",
-            "sun",
-            "emission",
-            "cutout",
-            "vertex_colors",
-            "mapped",
-            "color_map",
-            "clear_map",
-            "normal_map",
-            "metallic_roughness_map",
-            "occlusion_map",
-            "emissive_map",
-            "transmission",
-        ],
-    ];
+    /// Features that materials need: each effect's alone, on a lit surface where it needs that, and all of them with either
+    /// model of lighting.
+    fn of_materials() -> Vec<Vec<&'static str>> {
+        let models = [MaterialFlags::PHONG, MaterialFlags::PBR];
+        let alone = EFFECTS.iter().map(|effect| {
+            let is_lit = effect.flag.needs_light() && !models.contains(&effect.flag);
+            let model = is_lit.then_some(MaterialFlags::PBR);
+            effect.flag | model.unwrap_or_default()
+        });
+        let all = models.map(|model| {
+            let others = EFFECTS.iter().filter(|e| !models.contains(&e.flag));
+            let clear = model | MaterialFlags::CLEAR_MAP;
+            others.fold(clear, |all, effect| all | effect.flag)
+        });
+        let flags = alone.chain(all).map(MaterialFlags::with_implied);
+        flags.map(MaterialFlags::features).collect()
+    }
 
     /// The sets of features that a shader is linked with, by the line `// Variants: a | b c | none` at its head; only one without
     /// any where it has no such line. Features of materials and views are not among them.
@@ -318,9 +308,12 @@ mod tests {
             .filter_map(|t| t.split(')').next());
         let words =
             conditions.flat_map(|c| c.split(|c: char| !c.is_ascii_alphanumeric() && c != '_'));
+        let materials: BTreeSet<&str> = of_materials().into_iter().flatten().collect();
         let of_scenes = |f: &&str| {
-            let known = MATERIALS.into_iter().chain(OF_VIEWS);
-            ["numbered", "material"].contains(f) || known.flatten().any(|k| k == f)
+            let of_views = OF_VIEWS.into_iter().flatten();
+            ["numbered", "material"].contains(f)
+                || materials.contains(f)
+                || of_views.into_iter().any(|k| k == f)
         };
         words.filter(|f| !f.is_empty() && !of_scenes(f)).collect()
     }
@@ -361,7 +354,11 @@ mod tests {
                 .flat_map(|set| OF_VIEWS.map(|view| with(set, view)));
             let mut all: Vec<Vec<&str>> = views.collect();
             if text.contains("surface: Surface") || text.contains("-> Surface") {
-                all.extend(MATERIALS.map(|material| with(&own[0], material)));
+                all.extend(
+                    of_materials()
+                        .iter()
+                        .map(|material| with(&own[0], material)),
+                );
             }
             let folder = path.rsplit_once("::").map_or("", |(folder, _)| folder);
             for features in all {

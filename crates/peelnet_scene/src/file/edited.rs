@@ -4,7 +4,7 @@ use super::raw::RawObject;
 use crate::{
     camera::Camera,
     error::SceneError,
-    material::{Lighting, Material},
+    material::{Lighting, Material, NUMBERS},
     scatter::from_fixed_axes,
     scene::{Light, Object, Scene, Source},
     texture::Maps,
@@ -207,28 +207,25 @@ fn similarity(matrix: Mat4) -> Option<(f32, Quat, Vec3)> {
 }
 
 fn write_material(table: &mut Table, now: &Material, before: &Material) {
-    let lighting = |m: &Material| match m.lighting {
+    let lighting = match now.lighting {
         Lighting::Unlit => "unlit",
         Lighting::Phong => "phong",
         Lighting::Pbr => "pbr",
     };
-    let keys = |m: &Material| {
-        [
-            ("lighting", lighting(m).into()),
-            ("color", numbers(m.color)),
-            ("emission", numbers(m.emission)),
-            ("transmission_color", numbers(m.transmission)),
-            ("alpha", number(m.alpha)),
-            ("specular", number(m.specular)),
-            ("shininess", number(m.shininess)),
-            ("metallic", number(m.metallic)),
-            ("roughness", number(m.roughness)),
-            ("double_sided", m.double_sided.into()),
-        ]
-    };
-    for ((key, value), before) in keys(now).into_iter().zip(keys(before)) {
-        if value != before.1 {
-            table.insert(key.into(), value);
+    if now.lighting != before.lighting {
+        table.insert("lighting".into(), lighting.into());
+    }
+    if now.double_sided != before.double_sided {
+        table.insert("double_sided".into(), now.double_sided.into());
+    }
+    for number in NUMBERS {
+        let [values, old] = [now, before].map(number.values);
+        let value = match *values {
+            [x] => self::number(x),
+            _ => Value::Array(values.iter().copied().map(self::number).collect()),
+        };
+        if values != old {
+            table.insert(number.key.into(), value);
         }
     }
     if now.maps != before.maps {

@@ -1,6 +1,9 @@
 //! What all parts of a scene file share while it is loaded.
 
-use super::raw::{MapRef, MeshRef, Reference};
+use super::{
+    raw::MeshRef,
+    reference::{MapRef, Reference},
+};
 use crate::{
     error::{Fault, SceneError, shown},
     files::Files,

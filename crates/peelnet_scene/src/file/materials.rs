@@ -1,15 +1,11 @@
 //! Materials: a mesh's own, with the values and textures that the scene file sets.
 
-use super::{
-    loader::Loader,
-    raw::{AlphaMode, MapRef, RawMaterial},
-};
+use super::{loader::Loader, reference::MapRef};
 use crate::{
-    displacement::Displacement,
     error::{Fault, SceneError, check_color},
-    material::{Lighting, Material},
+    material::{AlphaMode, Lighting, Material, RawMaterial},
     specular_glossiness::{DIELECTRIC, Values, convert},
-    texture::{Maps, Texture},
+    texture::{Displacement, Maps, Texture},
 };
 use glam::Mat4;
 use std::sync::Arc;
@@ -135,33 +131,25 @@ impl Loader<'_> {
             occlusion: map(&raw.occlusion_map, "occlusion_map", &own.occlusion)?,
             emissive: map(&raw.emissive_map, "emissive_map", &own.emissive)?,
             displacement,
-            normal_scale: raw.normal_scale.unwrap_or(own.normal_scale),
-            occlusion_strength: raw.occlusion_strength.unwrap_or(own.occlusion_strength),
             wrap: raw.wrap.map_or(own.wrap, |wrap| [wrap; 2]),
-            nearest: own.nearest,
+            ..own.clone()
         };
         let (alpha_cutoff, blend) = raw.opacity(base, &maps);
         // A map multiplies the material's value, which is 1 where the file gives a map and no value.
         let by_map = |map: &Option<MapRef>, base: f32| if map.is_some() { 1.0 } else { base };
         let metal = &raw.metallic_roughness_map;
-        let material = Material {
-            name: base.name.clone(),
-            color: raw.color.unwrap_or(base.color),
-            alpha: raw.alpha.unwrap_or(base.alpha),
+        let mut material = Material {
             lighting,
-            specular: raw.specular.unwrap_or(base.specular),
-            shininess: raw.shininess.unwrap_or(base.shininess),
-            metallic: raw.metallic.unwrap_or(by_map(metal, base.metallic)),
-            roughness: raw.roughness.unwrap_or(by_map(metal, base.roughness)),
-            emission: raw
-                .emission
-                .unwrap_or(base.emission.map(|c| by_map(&raw.emissive_map, c))),
-            transmission: raw.transmission_color.unwrap_or(base.transmission),
+            metallic: by_map(metal, base.metallic),
+            roughness: by_map(metal, base.roughness),
+            emission: base.emission.map(|c| by_map(&raw.emissive_map, c)),
             maps,
             alpha_cutoff,
             double_sided: raw.double_sided.unwrap_or(base.double_sided),
             blend,
+            ..base.clone()
         };
+        raw.set_numbers(&mut material);
         match raw.first(&SPECULAR) {
             // An unlit surface shows its colour alone.
             Some(key) if lighting != Lighting::Unlit => {

@@ -1,14 +1,10 @@
 //! `[[object]]` and `[[scatter]]`.
 
-use super::{
-    loader::Loader,
-    materials::displace_in_object_space,
-    raw::{RawMaterial, RawObject},
-};
+use super::{loader::Loader, materials::displace_in_object_space, raw::RawObject};
 use crate::{
     displacement::displaced,
     error::{Fault, SceneError, require},
-    material::Material,
+    material::{Material, RawMaterial},
     mesh::Mesh,
     scatter::{Scatter, fixed_axes},
     scene::Object,

@@ -1,21 +1,11 @@
 //! The scene file as TOML: tables and keys. An unknown key is an error, because a misspelt one would otherwise be silently ignored.
 
+use super::reference::{Described, Reference};
 use crate::{
-    camera::Camera,
-    error::{Fault, within},
-    material::Lighting,
-    parameters::parameters,
-    pattern::Pattern,
-    scatter::Scatter,
-    shapes::Shape,
-    texture::Wrap,
+    camera::Camera, material::RawMaterial, parameters::parameters, scatter::Scatter, shapes::Shape,
 };
 use serde::{Deserialize, Deserializer, de::Error as _};
-use std::path::PathBuf;
 use toml::Value;
-
-/// Longest displacement, scene units, and farthest middle.
-const MOST_DISPLACED: f32 = 1e9;
 
 parameters! {
     #[derive(Debug)]
@@ -84,84 +74,6 @@ pub(super) struct RawObject {
     pub material: RawMaterial,
 }
 
-/// Declares the keys of a material, all of which may be left out, with the bounds of numbers and of each number of a colour.
-macro_rules! material_keys {
-    ($($key:ident: $type:ty $(=> [$low:expr, $high:expr])? $(=> each [$least:expr, $most:expr])?,)*) => {
-        /// The values of a material that a scene file sets; the mesh's own material has the others.
-        #[derive(Clone, Debug, Default, Deserialize)]
-        #[serde(deny_unknown_fields)]
-        pub(super) struct RawMaterial {
-            $(pub $key: Option<$type>,)*
-        }
-
-        impl RawMaterial {
-            /// This material's values, and an earlier state's where this one has none.
-            pub fn after(&self, earlier: &Self) -> Self {
-                Self { $($key: self.$key.clone().or_else(|| earlier.$key.clone()),)* }
-            }
-
-            pub fn given(&self) -> Vec<&'static str> {
-                let all = [$((self.$key.is_some(), stringify!($key)),)*].into_iter();
-                all.filter_map(|(given, key)| given.then_some(key)).collect()
-            }
-
-            pub fn check_bounds(&self) -> Result<(), Fault> {
-                let check = |key, numbers: &[f32], low, high| {
-                    numbers.iter().try_for_each(|x| within(key, *x, low, high))
-                };
-                $(
-                    $(check(stringify!($key), self.$key.as_slice(), $low, $high)?;)?
-                    $(check(stringify!($key), self.$key.as_slice().as_flattened(), $least, $most)?;)?
-                )*
-                Ok(())
-            }
-        }
-    };
-}
-
-material_keys! {
-    color: [f32; 3],
-    alpha: f32 => [0.0, 1.0],
-    lighting: Lighting,
-    specular: f32 => [0.0, f32::MAX],
-    // pow(0, 0) is not defined in shaders.
-    shininess: f32 => [1.0, f32::MAX],
-    metallic: f32 => [0.0, 1.0],
-    roughness: f32 => [0.0, 1.0],
-    specular_color: [f32; 3] => each [0.0, 1.0],
-    glossiness: f32 => [0.0, 1.0],
-    emission: [f32; 3] => each [0.0, f32::MAX],
-    transmission_color: [f32; 3] => each [0.0, 1.0],
-    color_map: MapRef,
-    normal_map: MapRef,
-    metallic_roughness_map: MapRef,
-    specular_color_map: MapRef,
-    glossiness_map: MapRef,
-    specular_glossiness_map: MapRef,
-    occlusion_map: MapRef,
-    emissive_map: MapRef,
-    displacement_map: MapRef,
-    displacement_scale: f32 => [-MOST_DISPLACED, MOST_DISPLACED],
-    displacement_middle: f32 => [-MOST_DISPLACED, MOST_DISPLACED],
-    displacement_level: u32,
-    normal_scale: f32 => [-100.0, 100.0],
-    occlusion_strength: f32 => [0.0, 1.0],
-    wrap: Wrap,
-    alpha_mode: AlphaMode,
-    alpha_cutoff: f32 => [0.0, 1.0],
-    double_sided: bool,
-    blend: bool,
-}
-
-/// What opacity means, as in glTF 2.0.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub(super) enum AlphaMode {
-    Opaque,
-    Mask,
-    Blend,
-}
-
 /// A state of the timeline: what changes from its time on.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -182,44 +94,9 @@ pub(super) struct RawChange {
     pub material: RawMaterial,
 }
 
-/// A path relative to the scene file, or a table that describes something generated.
-#[derive(Clone, Debug)]
-pub(crate) enum Reference<T> {
-    File(PathBuf),
-    Made(Box<T>),
-}
-
 /// A mesh: a path, or a table with `shape = …`.
 pub(crate) type MeshRef = Reference<Shape>;
 
-/// A texture: a path, or a table with `pattern = …`.
-pub(crate) type MapRef = Reference<Pattern>;
-
-/// What a table describes: the name of that, and the key that its table needs.
-pub(crate) trait Made {
-    const NAMES: [&str; 2];
-}
-
-impl Made for Shape {
+impl Described for Shape {
     const NAMES: [&str; 2] = ["mesh", "shape"];
-}
-
-impl Made for Pattern {
-    const NAMES: [&str; 2] = ["map", "pattern"];
-}
-
-impl<'de, T: Made + Deserialize<'de>> Deserialize<'de> for Reference<T> {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let [what, key] = T::NAMES;
-        match Value::deserialize(deserializer)? {
-            Value::String(path) => Ok(Self::File(path.into())),
-            Value::Table(table) if table.contains_key(key) => T::deserialize(table)
-                .map(|made| Self::Made(Box::new(made)))
-                .map_err(|e| D::Error::custom(e.message())),
-            other => Err(D::Error::custom(format!(
-                "a {what} is a path or a table with {key} = …, not {}",
-                other.type_str()
-            ))),
-        }
-    }
 }

@@ -2,10 +2,9 @@
 
 use super::mtl::Libraries;
 use crate::{
-    displacement::Displacement,
     error::{SceneError, shown},
     material::{Lighting, Material},
-    texture::{Maps, Texture, Wrap},
+    texture::{Displacement, Maps, Texture, Wrap},
 };
 use peelnet_core::files::printable;
 use std::{

@@ -5,7 +5,9 @@ use crate::{app::App, stage::Shown};
 use egui::{ComboBox, DragValue, Grid, Slider, Ui};
 use glam::{EulerRot, Mat4, Quat, Vec3};
 use peelnet_render::{LayerFormula, LayerView};
-use peelnet_scene::{Census, Effect, Light, Lighting, Material, Source};
+use peelnet_scene::{
+    Control, EFFECTS, Light, Lighting, Material, NUMBERS, Number, SceneFeatures, Source,
+};
 
 const INCREASING: &str =
     "Leaves out surfaces whose layer is not deeper than the one in front of them";
@@ -85,21 +87,20 @@ fn set(app: &mut App, shown: Shown) {
 /// Everything that a renderer does only where the scene needs it, with why, and a switch.
 fn effects(app: &mut App, ui: &mut Ui) {
     let Some(stage) = &app.stage else { return };
-    let census = Census::of(&stage.scene);
+    let features = SceneFeatures::new(&stage.scene);
     let mut shown = stage.shown.clone();
-    for effect in Effect::ALL {
-        let called = census.effects.iter().find(|e| e.name == effect.name());
-        let Some(called) = called.filter(|called| called.on) else {
+    for (effect, feature) in EFFECTS.iter().zip(&features.effects) {
+        if !feature.on {
             continue;
-        };
-        let mut on = !shown.off.contains(&effect);
-        let why: Vec<&str> = called.why.iter().take(8).map(String::as_str).collect();
+        }
+        let mut on = !shown.off.contains(&effect.name);
+        let why: Vec<&str> = feature.why.iter().take(8).map(String::as_str).collect();
         let why = printable(&why.join(", "));
-        let about = format!("Needed by: {why}. Adds {}.", called.adds);
-        let check = ui.checkbox(&mut on, effect.name()).on_hover_text(about);
+        let about = format!("Needed by: {why}. Adds {}.", feature.adds);
+        let check = ui.checkbox(&mut on, effect.name).on_hover_text(about);
         if check.changed() {
-            shown.off.retain(|e| *e != effect);
-            shown.off.extend((!on).then_some(effect));
+            shown.off.retain(|e| *e != effect.name);
+            shown.off.extend((!on).then_some(effect.name));
         }
     }
     set(app, shown);
@@ -177,14 +178,35 @@ fn color(ui: &mut Ui, name: &str, color: &mut [f32; 3]) {
     ui.color_edit_button_rgb(color).labelled_by(label.id);
 }
 
+/// The numbers that can be changed.
+fn controls() -> impl Iterator<Item = (&'static Number, &'static Control)> {
+    let with_control = |number: &'static Number| Some((number, number.control.as_ref()?));
+    NUMBERS.iter().filter_map(with_control)
+}
+
 fn material_of(ui: &mut Ui, before: &Material, original: Option<&Material>) -> Option<Material> {
     let mut m = before.clone();
+    let (always, of_model): (Vec<_>, Vec<_>) = controls().partition(|(_, c)| c.models.len() == 3);
+    let (colors, sliders): (Vec<_>, Vec<_>) = always.into_iter().partition(|(n, _)| n.length == 3);
     ui.horizontal(|ui| {
-        color(ui, "Colour", &mut m.color);
-        color(ui, "Emission", &mut m.emission);
+        for (number, control) in colors {
+            if let [r, g, b] = (number.values_mut)(&mut m) {
+                let mut rgb = [*r, *g, *b];
+                color(ui, control.label, &mut rgb);
+                [*r, *g, *b] = rgb;
+            }
+        }
     });
-    let share = |ui: &mut Ui, name: &str, x: &mut f32| ui.add(Slider::new(x, 0.0..=1.0).text(name));
-    share(ui, "Opacity", &mut m.alpha);
+    let show = |ui: &mut Ui, m: &mut Material, (number, control): (&Number, &Control)| {
+        let [low, high] = control.range;
+        for x in (number.values_mut)(m) {
+            let slider = Slider::new(x, low..=high).logarithmic(control.logarithmic);
+            ui.add(slider.text(control.label));
+        }
+    };
+    for slider in sliders {
+        show(ui, &mut m, slider);
+    }
     ui.horizontal(|ui| {
         for (lighting, name) in [
             (Lighting::Unlit, "Unlit"),
@@ -194,16 +216,9 @@ fn material_of(ui: &mut Ui, before: &Material, original: Option<&Material>) -> O
             ui.selectable_value(&mut m.lighting, lighting, name);
         }
     });
-    match m.lighting {
-        Lighting::Unlit => {}
-        Lighting::Phong => {
-            share(ui, "Highlight", &mut m.specular);
-            let exponent = Slider::new(&mut m.shininess, 1.0..=512.0);
-            ui.add(exponent.logarithmic(true).text("Exponent"));
-        }
-        Lighting::Pbr => {
-            share(ui, "Metallic", &mut m.metallic);
-            share(ui, "Roughness", &mut m.roughness);
+    for control in of_model {
+        if control.1.models.contains(&m.lighting) {
+            show(ui, &mut m, control);
         }
     }
     ui.checkbox(&mut m.double_sided, "Back faces");
