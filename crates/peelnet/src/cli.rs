@@ -31,9 +31,9 @@ type OrAll<T> = Option<T>;
   peelnet doctor                                        what will be used, and why
   peelnet run --out out/demo                            everything, on the shipped scenes
   peelnet extract sixteen-050 --out d                   peel a scene
-  peelnet train d --out m.safetensors                   train the thesis's network on it
+  peelnet train d --out m.safetensors                   train a network on it
   peelnet export m.safetensors --out w.wgsl             export it as shader code
-  peelnet render sixteen-050 --method deep-thesis --model m.safetensors --out a.png
+  peelnet render sixteen-050 --method deep-medium --model m.safetensors --out a.png
   peelnet recommend cups --budget-ms 30                 which method to use
 
 Results go to stdout, messages to stderr. Exit codes: 0 done, 1 failed, 2 wrong usage, 130 and 143 interrupted.
@@ -214,7 +214,7 @@ pub struct TrainArgs {
     #[arg(long, value_name = "MODEL")]
     pub out: PathBuf,
     /// What to train: thesis, small, medium, large, anchored-small, anchored-medium, nmt or dfaoit
-    #[arg(long, value_name = "RECIPE", default_value = "thesis")]
+    #[arg(long, value_name = "RECIPE", default_value = "medium")]
     pub recipe: Recipe,
     /// Passes over the training rows [default: the recipe's]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
@@ -286,7 +286,7 @@ pub struct ExportArgs {
 const RENDER_EXAMPLES: &str = "Examples:
   peelnet render scene.toml --out exact.png
   peelnet render scene.toml --method wboit-eq9:targets=f32 --out a.exr
-  peelnet render scene.toml --method deep-thesis --model m.safetensors --view 2 --out b.npy
+  peelnet render scene.toml --method deep-medium --model m.safetensors --view 2 --out b.npy
   peelnet render vase --time 40 --highlight 1 --out glaze.png
 
 IMAGE by its ending: .png (sRGB), .exr (linear f32), .npy (linear f32, H x W x 4 with coverage).
@@ -340,7 +340,7 @@ pub struct RenderArgs {
 #[command(after_help = "Examples:
   peelnet view                                           a shipped scene; drop files of your own onto the window
   peelnet view mesh.glb --method deep-large
-  peelnet view boxes-held --method deep-thesis --model m.safetensors     reads the file again while it is trained
+  peelnet view boxes-held --method deep-medium --model m.safetensors     reads the file again while it is trained
   peelnet view cups --method mboit4 --size 1280x800 --frames 10 --screenshot window.png
   peelnet view cups --method mboit4 --size 640x480 --bare --screenshot picture.png
   peelnet view foliage-held --method wboit-eq9 --compare error --against deep-medium

@@ -86,6 +86,7 @@ const REFUSED: &str = "
     1 | inspect folder | folder
     1 | train folder --out m | folder
     1 | train missing --out m | missing
+    1 | train own --out m | own: & method deep-medium draws every pixel exactly & recipe thesis
     1 | export missing.safetensors --out w.wgsl | missing.safetensors
 
     1 | render key.toml --out a.png | key.toml
