@@ -81,7 +81,7 @@ fn a_network_from_synthetic_lists_is_benched() {
     // The same rows give the same files again.
     let chart = folder.read("o/pareto.svg");
     std::fs::remove_file(folder.at("o/pareto.svg")).unwrap();
-    folder.prints("bench --redraw --out o -q");
+    folder.prints("bench redraw --out o -q");
     assert!(folder.read("o/pareto.svg") == chart);
     // What is exact is named where nothing bounds it, and what is small where bytes do.
     let named = |flags: &str| {
