@@ -22,7 +22,7 @@ pub const SCENES: &[SceneFile] = include!(concat!(env!("OUT_DIR"), "/scenes.rs")
 /// Scenes that show materials and other effects, sorted by name.
 pub const EFFECTS: &[SceneFile] = include!(concat!(env!("OUT_DIR"), "/effects.rs"));
 
-/// The designs of slabs that `peelnet bench --designs` compares, TOML.
+/// The designs of slabs that `peelnet bench designs` compares, TOML.
 pub const DESIGNS: &str = include_str!("designs.toml");
 
 /// The shipped scene of this name (`cups`) or path in the repository (`data/scenes/cups.toml`).

@@ -219,7 +219,7 @@ class Tests:
             answer = self.run(self.server.port, f"{command} s3://rows/plain").json()
             assert answer["rows"] == self.whole["rows"]
         model = f"{self.folder.name}/m.safetensors"
-        self.run(self.server.port, f"train s3://rows/plain --epochs 1 --out {model}").json()
+        self.run(self.server.port, f"train s3://rows/plain --recipe thesis --epochs 1 --out {model}").json()
         # What is there is neither replaced nor written again.
         self.fails(self.extract("plain"), "is not replaced", "--resume")
         again = self.extract("plain", more="--resume").json()
@@ -334,7 +334,7 @@ class Tests:
     def test_models(self):
         self.extract("for-models").json()
         place = "s3://rows/models/m.safetensors"
-        train = f"train s3://rows/for-models --epochs 1 --out {place}"
+        train = f"train s3://rows/for-models --recipe thesis --epochs 1 --out {place}"
         local = f"{self.folder.name}/local.safetensors"
         answer = self.run(self.server.port, train).json()
         assert answer["out"] == place, answer

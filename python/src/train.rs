@@ -113,7 +113,7 @@ impl Training {
 ///     A Training: the model and the history. After Ctrl-C or an exception of the callback the checkpoint of `out` holds
 ///     the last whole epoch, and no model file was written.
 #[pyfunction]
-#[pyo3(signature = (data, *, recipe="thesis", out=None, epochs=None, batch=None, lr=None, schedule=None, hidden=None, patience=None, loss="image", seed=1, max_rows=None, stream=false, buffer_rows=None, split="scene", threads=None, resume=false, loss_curve=None, callback=None, progress=None, force=false))]
+#[pyo3(signature = (data, *, recipe="medium", out=None, epochs=None, batch=None, lr=None, schedule=None, hidden=None, patience=None, loss="image", seed=1, max_rows=None, stream=false, buffer_rows=None, split="scene", threads=None, resume=false, loss_curve=None, callback=None, progress=None, force=false))]
 #[allow(clippy::too_many_arguments, reason = "keyword arguments of Python")]
 pub fn train<'py>(
     py: Python<'py>,

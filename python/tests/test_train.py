@@ -54,12 +54,16 @@ def test_the_command_trains_the_same(command, folder, training, tmp_path):
         np.testing.assert_allclose(value, theirs[name], rtol=1e-4, atol=1e-6)
 
 
+def test_without_a_recipe_it_is_medium(folder):
+    assert peelnet.train(folder, epochs=1).model.recipe == "medium"
+
+
 def test_streamed_training_gives_the_same_bytes_again(folder, tmp_path):
     # A buffer far smaller than the dataset.
     files = []
     for name in ("a", "b"):
         out = tmp_path / f"{name}.safetensors"
-        peelnet.train(folder, out=out, epochs=2, stream=True, buffer_rows=1000)
+        peelnet.train(folder, recipe="thesis", out=out, epochs=2, stream=True, buffer_rows=1000)
         files.append(out.read_bytes())
     assert files[0] == files[1]
 

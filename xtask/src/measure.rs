@@ -21,10 +21,10 @@ const STEPS: &str = "
     stress | stress | stress.csv.xz stress.md
     held-out | bench <held-out> --size 512x384 --views 2 --frames 3 | results.json.xz table.md pareto.svg pareto-mean.svg
     validation | bench <validation> --size 512x384 --views 1 --frames 3 | results.json.xz table.md
-    path | bench sixteen-held smoke-held --path --size 256x192 --methods <path> | path.csv path.md path-error.svg path-change.svg
+    path | bench path sixteen-held smoke-held --size 256x192 --methods <path> | path.csv path.md path-error.svg path-change.svg
     samples | bench cups-held foliage-held --samples 4 --size 256x192 --views 1 --frames 3 --methods <path> | table.md
-    effects | bench --effects --size 512x384 --frames 9 | effects.md effects-layers.svg
-    scaling | bench --scaling --frames 3 | scaling.md scaling-fragments.svg scaling-pixels.svg scaling-triangles.svg
+    effects | bench effects --size 512x384 --frames 9 | effects.md effects-layers.svg
+    scaling | bench scaling --frames 3 | scaling.md scaling-fragments.svg scaling-pixels.svg scaling-triangles.svg
     thesis-full | run --full --size 512x384 | results.json.xz table.md
     extract-sbuffer | <extract> |
     extract-dual | <extract> --peel dual |

@@ -140,7 +140,7 @@ pub fn designs() -> Outcome {
             training.join(" ")
         ))?;
         program.run(&format!(
-            "bench {} --designs out/search/synthetic,{peeled} --max-rows 1200000 --size 256x192 \
+            "bench designs out/search/synthetic,{peeled} {} --max-rows 1200000 --size 256x192 \
              --out docs/results/llvmpipe-xeon-2cores/{out}",
             judges.join(" ")
         ))

@@ -1,7 +1,10 @@
 //! The commands and their flags. The names are fixed: scripts call them.
 
+mod bench;
 #[cfg(test)]
 mod tests;
+
+pub use bench::*;
 
 use crate::values::{SAMPLES, fraction, methods, one_of, positive, size, views};
 use clap::{Args, Parser, Subcommand};
@@ -31,9 +34,9 @@ type OrAll<T> = Option<T>;
   peelnet doctor                                        what will be used, and why
   peelnet run --out out/demo                            everything, on the shipped scenes
   peelnet extract sixteen-050 --out d                   peel a scene
-  peelnet train d --out m.safetensors                   train the thesis's network on it
+  peelnet train d --out m.safetensors                   train a network on it
   peelnet export m.safetensors --out w.wgsl             export it as shader code
-  peelnet render sixteen-050 --method deep-thesis --model m.safetensors --out a.png
+  peelnet render sixteen-050 --method deep-medium --model m.safetensors --out a.png
   peelnet recommend cups --budget-ms 30                 which method to use
 
 Results go to stdout, messages to stderr. Exit codes: 0 done, 1 failed, 2 wrong usage, 130 and 143 interrupted.
@@ -214,7 +217,7 @@ pub struct TrainArgs {
     #[arg(long, value_name = "MODEL")]
     pub out: PathBuf,
     /// What to train: thesis, small, medium, large, anchored-small, anchored-medium, nmt or dfaoit
-    #[arg(long, value_name = "RECIPE", default_value = "thesis")]
+    #[arg(long, value_name = "RECIPE", default_value = "medium")]
     pub recipe: Recipe,
     /// Passes over the training rows [default: the recipe's]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
@@ -286,7 +289,7 @@ pub struct ExportArgs {
 const RENDER_EXAMPLES: &str = "Examples:
   peelnet render scene.toml --out exact.png
   peelnet render scene.toml --method wboit-eq9:targets=f32 --out a.exr
-  peelnet render scene.toml --method deep-thesis --model m.safetensors --view 2 --out b.npy
+  peelnet render scene.toml --method deep-medium --model m.safetensors --view 2 --out b.npy
   peelnet render vase --time 40 --highlight 1 --out glaze.png
 
 IMAGE by its ending: .png (sRGB), .exr (linear f32), .npy (linear f32, H x W x 4 with coverage).
@@ -340,7 +343,7 @@ pub struct RenderArgs {
 #[command(after_help = "Examples:
   peelnet view                                           a shipped scene; drop files of your own onto the window
   peelnet view mesh.glb --method deep-large
-  peelnet view boxes-held --method deep-thesis --model m.safetensors     reads the file again while it is trained
+  peelnet view boxes-held --method deep-medium --model m.safetensors     reads the file again while it is trained
   peelnet view cups --method mboit4 --size 1280x800 --frames 10 --screenshot window.png
   peelnet view cups --method mboit4 --size 640x480 --bare --screenshot picture.png
   peelnet view foliage-held --method wboit-eq9 --compare error --against deep-medium
@@ -383,78 +386,6 @@ pub struct ViewArgs {
     /// For scripts: save what the window shows after the last frame, and end
     #[arg(long, value_name = "FILE.png")]
     pub screenshot: Option<PathBuf>,
-}
-
-#[derive(Clone, Debug, Args)]
-#[command(after_help = "Examples:
-  peelnet bench cups --out out/bench
-  peelnet bench data/scenes/*-held.toml --methods wboit-eq9,mboit4,deep-medium --frames 10 --out out/bench
-  peelnet bench --scaling --out out/scaling
-  peelnet bench --effects --out out/effects
-  peelnet bench --path sixteen-050 --size 512x384 --methods painter-object,wboit-eq9,deep-medium --out out/path
-  peelnet bench --designs out/synthetic sixteen-050 --size 256x192 --out out/designs
-  peelnet bench scene.toml --methods mboit4:overestimation=0.5 --models m.safetensors --out out/bench
-
-DIR gets report.html, pareto.svg, results.json, results.csv, table.md and images/. Learned methods use the shipped models unless --models
-names another of the same recipe.")]
-pub struct BenchArgs {
-    /// Scene files, or names of shipped scenes
-    #[arg(value_name = "SCENE", required_unless_present_any = ["scaling", "redraw", "effects"])]
-    pub scenes: Vec<PathBuf>,
-    /// Output folder
-    #[arg(long, value_name = "DIR")]
-    pub out: PathBuf,
-    /// Instead of scenes: measure how time and memory grow with fragments per pixel, pixels and triangles
-    #[arg(long, conflicts_with_all = ["scenes", "size", "views", "resume"])]
-    pub scaling: bool,
-    /// Instead of methods: measure what each effect in the scenes costs (by default the shipped scenes for effects), and what is saved by
-    /// shading one layer of several; uses the first of --methods, by default wboit-eq9
-    #[arg(long, conflicts_with_all = ["scaling", "models", "views", "resume", "redraw"])]
-    pub effects: bool,
-    /// Instead of methods: train the network of each design of slabs on these datasets, and measure its error on the scenes, which the
-    /// datasets must not hold
-    #[arg(long, value_name = "DATASET,DATASET", value_delimiter = ',', conflicts_with_all = ["scaling", "effects", "methods", "models", "frames", "resume", "redraw", "path", "samples"])]
-    pub designs: Vec<PathBuf>,
-    /// The designs of --designs, TOML [default: the shipped data/designs.toml]
-    #[arg(long, value_name = "FILE", requires = "designs")]
-    pub designs_file: Option<PathBuf>,
-    /// Rows of the datasets that --designs uses at most, drawn by whole pixels; more need more memory [default: 33554432, about 4 GiB]
-    #[arg(long, value_name = "N", requires = "designs", value_parser = clap::value_parser!(u64).range(1..))]
-    pub max_rows: Option<u64>,
-    /// Measure nothing; write report, charts and tables again from DIR/results.json
-    #[arg(long, conflicts_with_all = ["scenes", "scaling"])]
-    pub redraw: bool,
-    /// Move the camera and all objects along a path instead: error of every frame, its change from frame to frame, contour pairs
-    /// (neighbouring pixels with the same surfaces and different errors), and the visible difference of the video (ColorVideoVDP)
-    #[arg(long, conflicts_with_all = ["scaling", "effects", "redraw", "views", "resume"])]
-    pub path: bool,
-    /// Methods to compare, separated by commas; parameters follow a colon
-    #[arg(long, value_name = "all|A,B", default_value = "all", value_parser = methods)]
-    pub methods: OrAll<Vec<MethodSpec>>,
-    /// Model files of learned methods, separated by commas
-    #[arg(long, value_name = "MODEL,MODEL", value_delimiter = ',')]
-    pub models: Vec<PathBuf>,
-    /// Timed frames per method and view, drawn method after method in turn; 0 times the compared frame. With --path the frames of the
-    /// path, 60 by default
-    #[arg(
-        long,
-        value_name = "N",
-        default_value_t = 5,
-        default_value_if("path", "true", "60")
-    )]
-    pub frames: u32,
-    /// Frame size in pixels
-    #[arg(long, value_name = "WxH", value_parser = size, default_value = "1024x768")]
-    pub size: [u32; 2],
-    /// Samples a pixel, 1 or 4, of all methods and of the exact image; a frame of 4 is drawn four times
-    #[arg(long, value_name = "1|4", default_value_t = 1, value_parser = one_of(SAMPLES), conflicts_with_all = ["scaling", "effects"])]
-    pub samples: u32,
-    /// Views of each scene
-    #[arg(long, value_name = "N|all", default_value = "all", value_parser = views)]
-    pub views: OrAll<u32>,
-    /// Resume an interrupted run with the same settings; finished views are not drawn again
-    #[arg(long)]
-    pub resume: bool,
 }
 
 #[derive(Clone, Debug, Args)]

@@ -56,8 +56,8 @@ const WRONG_USAGE: &str = "
     render two.toml --out a.png --highlight 1 --layers ours
     render two.toml --out a.png --samples 8
     bench two.toml --out d --methods mboit4:bios=1
-    bench two.toml --out d --effects --scaling
-    bench two.toml --out d --path --scaling
+    bench effects two.toml --out d --samples 4
+    bench redraw two.toml --out d
     bench two.toml --out d --samples 2
     stress --methods mboit4:overestimation=-5
     stress --cases shallow";
@@ -73,10 +73,10 @@ const REFUSED: &str = "
     2 | extract two.toml two.toml --out d | rename one
     1 | extract stained.toml --out d | transmission_color
     2 | bench two.toml two.toml --out b | named 'two' & two.toml) & rename one
-    2 | bench two.toml --path --frames 0 --out b | at least one frame
-    1 | bench two.toml --path --frames 1000 --methods abuffer --out b | 1000 frames of 1024x768 & --size
-    2 | bench two.toml --designs own --out b | scene 'two' & without it
-    1 | bench nan.toml --designs own --designs-file designs.toml --out b | designs.toml & design 1 (\"short\") & must end at 1
+    2 | bench path two.toml --frames 0 --out b | at least one frame
+    1 | bench path two.toml --frames 1000 --methods abuffer --out b | 1000 frames of 1024x768 & --size
+    2 | bench designs own two.toml --out b | own: & scene 'two' & without it
+    1 | bench designs own nan.toml --file designs.toml --out b | designs.toml & design 1 (\"short\") & must end at 1
     2 | inspect notes.txt | notes.txt
     1 | render two.toml --out a.png --size 100000x100000 | needs 100000 pixels a side
 
@@ -86,6 +86,7 @@ const REFUSED: &str = "
     1 | inspect folder | folder
     1 | train folder --out m | folder
     1 | train missing --out m | missing
+    1 | train own --out m | own: & method deep-medium draws every pixel exactly & recipe thesis
     1 | export missing.safetensors --out w.wgsl | missing.safetensors
 
     1 | render key.toml --out a.png | key.toml
@@ -129,8 +130,8 @@ const REFUSED: &str = "
     1 | train sound --out m --loss-curve notes.txt/loss.csv | --loss-curve & notes.txt
     1 | train sound --out notes.txt/m | --out & notes.txt
     1 | stress --cases deep --methods wboit-eq9 --out notes.txt | --out notes.txt
-    1 | bench --scaling --out notes.txt/b | --out & notes.txt
-    1 | bench --effects --out notes.txt | --out notes.txt
+    1 | bench scaling --out notes.txt/b | --out & notes.txt
+    1 | bench effects --out notes.txt | --out notes.txt
     1 | extract two.toml --out notes.txt | --out notes.txt
     1 | run two.toml --out notes.txt | --out notes.txt
     2 | extract two.toml --out - | name a folder
@@ -262,6 +263,25 @@ fn what_is_refused_says_why_and_changes_nothing() {
     }
 }
 
+#[test]
+fn flags_that_became_commands_say_so() {
+    let folder = Folder::new(&[]);
+    let help = folder.prints("bench --help");
+    for (flag, command) in [
+        ("path", "path SCENE"),
+        ("scaling", "scaling"),
+        ("effects", "effects"),
+        ("designs", "designs DATASET SCENE"),
+        ("redraw", "redraw"),
+    ] {
+        let text = folder.says(&format!("bench --{flag} cups --out d"), 2);
+        let tip = format!("--{flag} is a command now: peelnet bench {command} --out DIR");
+        assert!(text.contains(&tip), "{text}");
+        assert!(!help.contains(&format!("--{flag}")), "{help}");
+    }
+    assert!(!folder.at("d").exists());
+}
+
 /// With or without a driver, `doctor --json` is JSON, and its exit code says whether an adapter can be used.
 #[test]
 fn doctor_answers_in_json() {
@@ -316,7 +336,7 @@ fn the_vase_shows_its_layers_and_its_age() {
         let has = |name| effects.iter().any(|e| e["name"] == name && e["on"] == on);
         assert!(names.split(' ').all(has), "{names}");
     }
-    let answer = folder.json("bench --effects mist --size 32x24 --frames 1 --out e");
+    let answer = folder.json("bench effects mist --size 32x24 --frames 1 --out e");
     // Unlit: nothing is shaded that could be left out.
     assert_eq!(answer["parts"].as_array().map(Vec::len), Some(0));
     let costs = answer["costs"].as_array().unwrap().iter();

@@ -103,7 +103,7 @@ fn an_extraction_that_is_killed_leaves_whole_parts_and_can_be_resumed() {
 fn training_that_is_killed_goes_on_to_the_same_weights() {
     let folder = Folder::new(&[]);
     folder.prints("extract --synthetic 3000 --out d --seed 2");
-    let line = "train d --out o/m.safetensors --epochs 8 --loss-curve o/loss.csv";
+    let line = "train d --recipe thesis --out o/m.safetensors --epochs 8 --loss-curve o/loss.csv";
     folder.prints(line);
     let model = folder.read("o/m.safetensors");
     kill_again_and_again(line, &folder, || {
@@ -152,7 +152,7 @@ fn a_bench_that_is_killed_goes_on_to_the_same_errors() {
 fn resuming_what_has_finished_says_so_and_keeps_it() {
     let folder = folder();
     folder.prints("extract --synthetic 2000 --out d");
-    let train = "train d --out m-0.5 --epochs 2";
+    let train = "train d --recipe thesis --out m-0.5 --epochs 2";
     let bench = "bench s.toml --out o --size 32x24 --frames 1 --methods wboit-eq9";
     let text = folder.says(&format!("{train} --resume"), 1);
     assert!(
@@ -180,13 +180,16 @@ fn resuming_what_has_finished_says_so_and_keeps_it() {
 fn a_full_disk_is_one_error_and_leaves_nothing() {
     let folder = folder();
     folder.prints("extract --synthetic 2000 --out d");
-    folder.prints("train d --out m.safetensors --epochs 1");
+    folder.prints("train d --recipe thesis --out m.safetensors --epochs 1");
     let before = files(&folder);
     for (kilobytes, line) in [
         (16, "extract s.toml --out o --size 320x240"),
         (16, "extract s.toml --out o --size 320x240 --format csv"),
         (16, "extract s.toml --out o --size 320x240 --format npy"),
-        (1, "train d --out o/m.safetensors --epochs 2"),
+        (
+            1,
+            "train d --recipe thesis --out o/m.safetensors --epochs 2",
+        ),
         (1, "export m.safetensors --out o.wgsl"),
         (2, "render s.toml --out o.exr --size 64x48"),
         (

@@ -102,7 +102,7 @@ fn paths_that_are_no_text_do_not_end_a_command() {
         "inspect @.toml",
         "inspect @.safetensors",
         "extract --synthetic 300 --out @-d",
-        "train @-d --epochs 1 --out @-m",
+        "train @-d --recipe thesis --epochs 1 --out @-m",
     ] {
         for line in [line, &format!("{line} --json")] {
             let words: Vec<OsString> = line.split(' ').map(odd).collect();

@@ -1,4 +1,4 @@
-//! The special measurements: `bench --designs`, `bench --path`, `--samples`, and `stress`.
+//! The special measurements: the commands of `bench`, `--samples`, and `stress`.
 
 use crate::common::{Folder, SCENE, SPHERES, rows_of};
 use serde_json::Value;
@@ -34,7 +34,7 @@ fn designs_are_measured_as_they_are_drawn() {
     let one_view = SPHERES.replace("views = 2", "views = 1");
     let folder = Folder::new(&[("s.toml", &one_view), ("f.toml", DESIGNS)]);
     folder.prints("extract --synthetic 1000 --out d");
-    let line = "bench s.toml --designs d --designs-file f.toml --size 96x64 --out o";
+    let line = "bench designs d s.toml --file f.toml --size 96x64 --out o";
     folder.prints(line);
     let found = folder.json(line);
     for (row, name, bytes) in [(0, "small", 30), (1, "three", 36)] {
@@ -69,7 +69,7 @@ fn a_path_is_measured() {
     let second = "[[object]]\nmesh = { shape = \"quad\", size = [1, 1] }\ntranslate = [0.2, 0.1, -0.5]\n[object.material]\n\
         color = [0.1, 0.8, 0.1]\nalpha = 0.5\n";
     let folder = Folder::new(&[("s.toml", &format!("{SCENE}{second}"))]);
-    let line = "bench s.toml --path --frames 3 --size 24x16 --methods abuffer,depth-peel,weighted-sum --out out";
+    let line = "bench path s.toml --frames 3 --size 24x16 --methods abuffer,depth-peel,weighted-sum --out out";
     folder.prints(line);
     let answer = folder.json(line);
     let [exact, blended] = rows(&answer) else {
@@ -99,6 +99,18 @@ fn a_path_is_measured() {
     ] {
         let strip = folder.at(&format!("out/images/{name}.png"));
         assert_eq!(image::image_dimensions(strip).unwrap(), size, "{name}");
+    }
+}
+
+/// A row for each step: nine of fragments, five of pixels, five of triangles.
+#[test]
+fn growth_is_measured() {
+    let folder = Folder::new(&[]);
+    let answer = folder.json("bench scaling --methods weighted-sum --frames 1 --out o");
+    let steps = rows(&answer);
+    assert!(steps.len() == 19 && steps[18]["series"] == "triangles");
+    for name in ["scaling.json", "scaling.md", "scaling-pixels.svg"] {
+        assert!(folder.at("o").join(name).exists(), "{name}");
     }
 }
 

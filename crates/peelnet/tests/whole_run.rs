@@ -43,12 +43,13 @@ fn a_run_writes_everything_it_promises() {
     assert!(picture == folder.read("a.png"));
 }
 
-/// Synthetic lists, a network from them, its export, and a bench of it against another method.
+/// Synthetic lists, a network from them (without a recipe, of medium), its export, and a bench of it
+/// against another method.
 #[test]
 fn a_network_from_synthetic_lists_is_benched() {
     let folder = Folder::new(&[("s.toml", SPHERES)]);
     folder.prints("extract --synthetic 2000 --out d -q");
-    folder.prints("train d --recipe medium --epochs 2 --hidden 4 --out m.safetensors -q");
+    folder.prints("train d --epochs 2 --hidden 4 --out m.safetensors -q");
     folder.prints("export m.safetensors --out w.wgsl -q");
     let answer = folder.json(
         "bench s.toml --out o --size 64x48 --frames 2 --methods wboit-eq9,mboit4 --models m.safetensors",
@@ -80,7 +81,7 @@ fn a_network_from_synthetic_lists_is_benched() {
     // The same rows give the same files again.
     let chart = folder.read("o/pareto.svg");
     std::fs::remove_file(folder.at("o/pareto.svg")).unwrap();
-    folder.prints("bench --redraw --out o -q");
+    folder.prints("bench redraw --out o -q");
     assert!(folder.read("o/pareto.svg") == chart);
     // What is exact is named where nothing bounds it, and what is small where bytes do.
     let named = |flags: &str| {

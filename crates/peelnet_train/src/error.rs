@@ -1,5 +1,6 @@
 //! What can go wrong in training.
 
+use peelnet_model::Recipe;
 use std::path::{Path, PathBuf};
 
 /// Why training did not start or did not finish.
@@ -37,9 +38,18 @@ impl TrainError {
         Self::Failed(format!("{data}: {problem}"))
     }
 
-    pub(crate) fn no_rows(data: &str) -> Self {
-        let problem = "no rows to train on: extract views with transparent objects in them, of scenes that are not held out";
-        Self::rows(data, problem)
+    /// Nothing to learn from, of so many rows of datasets.
+    pub(crate) fn no_examples(data: &str, recipe: Recipe, rows: u64) -> Self {
+        let problem = match rows {
+            0 => "no rows to train on: extract views with transparent objects in them, of scenes that are not held out".to_owned(),
+            _ => format!(
+                "no examples for recipe {recipe}: method {} draws every pixel exactly, each has so few \
+                 fragments; extract scenes with more layers, or train recipe {}, which learns from every row",
+                recipe.method,
+                Recipe::THESIS
+            ),
+        };
+        Self::rows(data, &problem)
     }
 }
 

@@ -99,7 +99,8 @@ impl TrainingData {
             },
         )?;
         if scratch.rows == 0 {
-            return Err(TrainError::no_rows(&plan.source));
+            let rows = plan.dataset.rows;
+            return Err(TrainError::no_examples(&plan.source, config.recipe, rows));
         }
         data.scratch = Some(Arc::new(scratch));
         if let Some(name) = lacking(&data, config) {

@@ -200,7 +200,8 @@ impl TrainingData {
         let names = recipe.input_names();
         let rows = self.rows_held();
         if rows == 0 && self.inputs.len() == names.len() {
-            return Err(TrainError::no_rows(&self.source));
+            let of = self.dataset.as_ref().map_or(0, |dataset| dataset.rows);
+            return Err(TrainError::no_examples(&self.source, recipe, of));
         }
         let uneven = names.iter().zip(&self.inputs);
         let mut uneven = uneven.map(|(name, values)| (name, values.len()));

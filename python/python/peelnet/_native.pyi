@@ -274,7 +274,7 @@ def seal(path: _Path) -> Dataset: ...
 def train(
     data: Dataset | _Path | Iterable[Dataset | _Path],
     *,
-    recipe: str = "thesis",
+    recipe: str = "medium",
     out: _Path | None = None,
     epochs: int | None = None,
     batch: int | None = None,

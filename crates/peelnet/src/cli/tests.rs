@@ -9,8 +9,7 @@ const OTHERS: &str = "
   peelnet train d --out m --stream --buffer-rows 1000 --split pixel --schedule one-cycle
   peelnet train d --out m --recipe small --hidden 4,3 --loss image --batch 64 --lr 1e-3 --max-rows 1000 --patience 3
   peelnet export m --out w --precision f16 --lang glsl-es
-  peelnet bench --redraw --out d
-  peelnet bench --designs d,e s --out o --designs-file f.toml --max-rows 1000
+  peelnet bench designs d,e s --out o --file f.toml --max-rows 1000
   peelnet bench s --out d --resume --samples 4
   peelnet view cups --camera -1,0,6,0,0,0,30 --time 40
   peelnet inspect x --time
@@ -31,6 +30,11 @@ fn examples_in_help_texts_are_read() {
         let start = format!("  peelnet {name} ");
         assert!(help.contains(&start) || name == "doctor", "{start}");
         examples += &help;
+        for below in command.get_subcommands() {
+            let (help, start) = (help_of(below), format!("{start}{} ", below.get_name()));
+            assert!(help.contains(&start), "{start}");
+            examples += &help;
+        }
     }
     for line in examples
         .lines()

@@ -1,7 +1,10 @@
-//! `peelnet bench`: error against time for many methods, and with its flags how that grows, what effects cost, and methods along a path.
+//! `peelnet bench`: error against time for many methods, and its commands: how that grows, what effects
+//! cost, and methods along a path.
 
-use super::{Context, bench_designs, command_line};
-use crate::cli::BenchArgs;
+mod designs;
+
+use super::{Context, command_line};
+use crate::cli::{BenchArgs, BenchCommand, CompareArgs, EffectsArgs, PathArgs, ScalingArgs};
 use crate::progress::Bar;
 use peelnet::{Compared, Failure};
 use peelnet_bench::report::{Measurement, Results};
@@ -14,59 +17,62 @@ use peelnet_bench::{
     scaling::{self, Scaling},
     settings_hash,
 };
-use peelnet_core::files::{Outputs, error_line, shown};
+use peelnet_core::files::{error_line, shown};
 use peelnet_render::gpu::Gpu;
-use peelnet_render::{LearnedWeight, MethodSpec, role};
+use peelnet_render::{LearnedWeight, MethodSpec};
 use peelnet_scene::{Scene, suite};
 use serde_json::json;
 use std::path::{Path, PathBuf};
 
-/// Effects are measured with it where no method is named: one pass, nothing that could hide what an effect costs.
-pub(super) const EFFECTS_METHOD: &str = role::WEIGHTED_BLENDING;
-
 pub(super) fn run(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure> {
-    if !args.designs.is_empty() {
-        return bench_designs::run(context, args);
+    match &args.command {
+        Some(BenchCommand::Path(args)) => along_path(context, args),
+        Some(BenchCommand::Scaling(args)) => scale(context, args),
+        Some(BenchCommand::Effects(args)) => measure_effects(context, args),
+        Some(BenchCommand::Designs(args)) => designs::run(context, args),
+        Some(BenchCommand::Redraw { out }) => redraw(context, out),
+        None => (args.comparison.iter()).try_for_each(|args| compare(context, args)),
     }
-    if args.effects {
-        return measure_effects(context, args);
-    }
-    if args.scaling {
-        return scale(context, args);
-    }
-    if args.path {
-        return along_path(context, args);
-    }
-    let mut outputs = outputs(context, args, &Results::<Bench>::files())?;
-    outputs.folder("--out", &args.out, [(Partial::FILE, Partial::KIND)])?;
-    let results = if args.redraw {
-        context.begin(&mut outputs, &[])?;
-        read(&args.out)?
-    } else {
-        let scenes = context.scenes(&args.scenes)?;
-        context.begin(&mut outputs, &scenes)?;
-        let plan = Plan {
-            samples: args.samples,
-            views: args.views.map(|n| n as usize),
-            frames: args.frames,
-            ..Plan::new(args.size, &[])
-        };
-        let named = args.methods.as_deref();
-        let out = Some((args.out.as_path(), args.resume));
-        measure(context, &scenes, named, &args.models, plan, out)?
+}
+
+fn compare(context: &Context<'_>, args: &CompareArgs) -> Result<(), Failure> {
+    let pictures = &args.pictures;
+    let (out, models) = (&pictures.compared.out, &pictures.compared.models);
+    let mut outputs = context.results::<Bench>(pictures.scenes.iter().chain(models), out)?;
+    outputs.folder("--out", out, [(Partial::FILE, Partial::KIND)])?;
+    let scenes = context.scenes(&pictures.scenes)?;
+    context.begin(&mut outputs, &scenes)?;
+    let plan = Plan {
+        samples: pictures.samples,
+        views: args.views.map(|n| n as usize),
+        frames: args.frames,
+        ..Plan::new(pictures.size, &[])
     };
-    results.write(&args.out)?;
-    // Drawing older results again ends no interrupted run.
-    if !args.redraw {
-        Partial::discard(&args.out);
-    }
-    context
-        .console
-        .result(|| results.table().plain(), || json!(results))
+    let named = pictures.compared.methods.as_deref();
+    let folder = Some((out.as_path(), args.resume));
+    let results = measure(context, &scenes, named, models, plan, folder)?;
+    results.write(out)?;
+    Partial::discard(out);
+    print(context, &results)
+}
+
+/// Draws older results again. That ends no interrupted run: its finished views stay.
+fn redraw(context: &Context<'_>, out: &Path) -> Result<(), Failure> {
+    let mut outputs = context.results::<Bench>(&[], out)?;
+    outputs.folder("--out", out, [(Partial::FILE, Partial::KIND)])?;
+    context.begin(&mut outputs, &[])?;
+    let results = read(out)?;
+    results.write(out)?;
+    print(context, &results)
+}
+
+fn print(context: &Context<'_>, results: &Results<Bench>) -> Result<(), Failure> {
+    let console = context.console;
+    console.result(|| results.table().plain(), || json!(results))
 }
 
 /// Writes what was measured into a folder, and shows it.
-pub(super) fn report<T: Measurement>(
+fn report<T: Measurement>(
     context: &Context<'_>,
     gpu: &Gpu,
     out: &Path,
@@ -78,12 +84,6 @@ pub(super) fn report<T: Measurement>(
     context.console.result(|| text(&results), || json!(results))
 }
 
-fn outputs(context: &Context<'_>, args: &BenchArgs, files: &[&str]) -> Result<Outputs, Failure> {
-    let mut outputs = context.outputs(args.scenes.iter().chain(&args.models));
-    context.results(&mut outputs, &args.out, files)?;
-    Ok(outputs)
-}
-
 /// Shows the frames of a comparison on a bar of this name, and warns of methods that are left out.
 pub(super) fn show<'a>(context: &'a Context<'_>, name: &'static str) -> impl FnMut(Progress) + 'a {
     let bar = Bar::new(context.console, name, 0);
@@ -93,25 +93,26 @@ pub(super) fn show<'a>(context: &'a Context<'_>, name: &'static str) -> impl FnM
     }
 }
 
-fn scale(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure> {
-    let mut outputs = outputs(context, args, &Results::<Scaling>::files())?;
+fn scale(context: &Context<'_>, args: &ScalingArgs) -> Result<(), Failure> {
+    let (out, models) = (&args.compared.out, &args.compared.models);
+    let mut outputs = context.results::<Scaling>(models, out)?;
     context.begin(&mut outputs, &[])?;
     let gpu = context.gpu()?;
     // Parameters change what a method costs, but hardly how that grows.
-    let named = args.methods.as_deref();
-    let (Compared { methods, .. }, learned) =
-        compared(context, &gpu, named, &args.models, one_of_each)?;
+    let named = args.compared.methods.as_deref();
+    let (Compared { methods, .. }, learned) = compared(context, &gpu, named, models, one_of_each)?;
+    // Every step has a size of its own.
     let plan = Plan {
         learned: &learned,
         frames: args.frames,
-        ..Plan::new(args.size, &methods)
+        ..Plan::new([1, 1], &methods)
     };
     let scaling = scaling::measure(&gpu, &plan, context.stop, &mut show(context, "scaling"))?;
-    report(context, &gpu, &args.out, scaling, |r| r.table().plain())
+    report(context, &gpu, out, scaling, |r| r.table().plain())
 }
 
-fn measure_effects(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure> {
-    let mut outputs = outputs(context, args, &Results::<Effects>::files())?;
+fn measure_effects(context: &Context<'_>, args: &EffectsArgs) -> Result<(), Failure> {
+    let mut outputs = context.results::<Effects>(&args.scenes, &args.out)?;
     let scenes = if args.scenes.is_empty() {
         let shipped = suite::EFFECTS.iter();
         let shipped = shipped.map(|file| suite::load_file(file, None));
@@ -120,9 +121,8 @@ fn measure_effects(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failur
         context.scenes(&args.scenes)?
     };
     context.begin(&mut outputs, &scenes)?;
-    let method = args.methods.iter().flatten().next().cloned();
     let settings = effects::Settings {
-        method: method.map_or_else(|| EFFECTS_METHOD.parse(), Ok)?,
+        method: args.method.clone(),
         size: args.size,
         frames: args.frames.max(1),
     };
@@ -141,33 +141,34 @@ fn measure_effects(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failur
     })
 }
 
-fn along_path(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure> {
+fn along_path(context: &Context<'_>, args: &PathArgs) -> Result<(), Failure> {
+    let pictures = &args.pictures;
+    let (out, models) = (&pictures.compared.out, &pictures.compared.models);
     if args.frames == 0 {
         return Err(Failure::wrong("--frames 0: a path has at least one frame"));
     }
-    let mut outputs = outputs(context, args, &Results::<Along>::files())?;
-    let scenes = context.scenes(&args.scenes)?;
+    let mut outputs = context.results::<Along>(pictures.scenes.iter().chain(models), out)?;
+    let scenes = context.scenes(&pictures.scenes)?;
     context.begin(&mut outputs, &scenes)?;
     let gpu = context.gpu()?;
     // A path costs as much as sixty views.
-    let named = args.methods.as_deref();
-    let (Compared { methods, .. }, learned) =
-        compared(context, &gpu, named, &args.models, one_of_each)?;
-    let images = args.out.join("images");
+    let named = pictures.compared.methods.as_deref();
+    let (Compared { methods, .. }, learned) = compared(context, &gpu, named, models, one_of_each)?;
+    let images = out.join("images");
     let plan = Plan {
-        samples: args.samples,
+        samples: pictures.samples,
         frames: args.frames,
         learned: &learned,
-        lenient: args.methods.is_none(),
+        lenient: named.is_none(),
         images: Some(&images),
-        ..Plan::new(args.size, &methods)
+        ..Plan::new(pictures.size, &methods)
     };
     let found = {
         let show = &mut show(context, "path");
         path::measure(&gpu, &scenes, &plan, context.stop, show)?
     };
     context.warn_of_memory(&gpu);
-    report(context, &gpu, &args.out, found, |r| r.table().plain())
+    report(context, &gpu, out, found, |r| r.table().plain())
 }
 
 /// Compares methods on scenes: those named, or all, with these model files. `out` is where pictures and the rows of finished views go, and

@@ -1,5 +1,5 @@
-use super::{Context, bench::EFFECTS_METHOD, few, json_path, losses};
-use crate::cli::InspectArgs;
+use super::{Context, few, json_path, losses};
+use crate::cli::{EFFECTS_METHOD, InspectArgs};
 use crate::summary_text::summary_text;
 use peelnet::Failure;
 use peelnet_bench::effects::{self, Cost, Settings};

@@ -1,5 +1,4 @@
 mod bench;
-mod bench_designs;
 mod doctor;
 mod export;
 mod extract;
@@ -16,7 +15,7 @@ use crate::console::Console;
 use crate::interrupt;
 use crate::progress::Bar;
 use peelnet::{Failure, model_for, weight_of};
-use peelnet_bench::report::kind_of;
+use peelnet_bench::report::{Measurement, Results, kind_of};
 use peelnet_core::files::{Outputs, error_line, printable, shown};
 use peelnet_model::Model;
 use peelnet_render::gpu::Gpu;
@@ -53,12 +52,18 @@ impl Context<'_> {
         Outputs::new(("--force", self.global.force), inputs)
     }
 
-    fn results(&self, outputs: &mut Outputs, out: &Path, files: &[&str]) -> Result<(), Failure> {
-        let files = files.iter().map(|name| (name, kind_of(name)));
-        outputs.folder("--out", out, files)?;
+    /// The outputs of a measurement that reads these files: its results and pictures in a folder.
+    fn results<'p, T: Measurement>(
+        &self,
+        inputs: impl IntoIterator<Item = &'p PathBuf>,
+        out: &Path,
+    ) -> Result<Outputs, Failure> {
+        let mut outputs = self.outputs(inputs);
+        let files = Results::<T>::files().into_iter();
+        outputs.folder("--out", out, files.map(|name| (name, kind_of(name))))?;
         let images = out.join("images");
         outputs.files_like("--out", &images, "png", ImageFormat::Png.kind())?;
-        Ok(())
+        Ok(outputs)
     }
 
     /// Says what will be replaced, before work on these scenes begins.

@@ -44,8 +44,7 @@ const SHOWN_SCENE: &str = "foliage-held";
 
 /// Everything that a run writes but its dataset, which has its own way.
 fn outputs(context: &Context<'_>, args: &RunArgs) -> Result<Outputs, Failure> {
-    let mut outputs = context.outputs(&args.scenes);
-    context.results(&mut outputs, &args.out, &Results::<ThesisRun>::files())?;
+    let mut outputs = context.results::<ThesisRun>(&args.scenes, &args.out)?;
     peelnet_dataset::replaces(&args.out.join("dataset"), false)?;
     let files = [
         ("dataset-summary.json", summary_text::KIND),

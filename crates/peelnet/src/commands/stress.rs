@@ -16,9 +16,8 @@ pub(super) fn run(context: &Context<'_>, args: &StressArgs) -> Result<(), Failur
         none if none.is_empty() => CASES.iter().collect(),
         cases => cases,
     };
-    let mut outputs = context.outputs(&args.models);
     if let Some(out) = &args.out {
-        context.results(&mut outputs, out, &Results::<Stressed>::files())?;
+        let mut outputs = context.results::<Stressed>(&args.models, out)?;
         context.begin(&mut outputs, &[])?;
     }
     let gpu = context.gpu()?;

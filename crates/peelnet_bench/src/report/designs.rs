@@ -1,4 +1,4 @@
-//! The files of `peelnet bench --designs`: what designs of slabs are worth.
+//! The files of `peelnet bench designs`: what designs of slabs are worth.
 
 use crate::designs::{Designs, Kept, Row, Score};
 use crate::report::{Files, Measurement, Results, Table};

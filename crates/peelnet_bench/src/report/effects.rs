@@ -1,4 +1,4 @@
-//! The files of `peelnet bench --effects`: what effects cost, what they look like, and what shading one layer saves.
+//! The files of `peelnet bench effects`: what effects cost, what they look like, and what shading one layer saves.
 
 use crate::chart::{Line, Scale, Svg, line_chart};
 use crate::effects::{Cost, Effects, FILLED, Fill, LayerCost, Parts, picture_of};
@@ -222,7 +222,7 @@ mod tests {
             fills: vec![fill(0.5, 2.0), fill(0.75, 3.0), fill(1.0, 4.0)],
             ..Effects::default()
         };
-        let results = Results::new(machine(), "peelnet bench --effects", effects);
+        let results = Results::new(machine(), "peelnet bench effects", effects);
         let tables = results.tables().into_iter().map(|(.., table)| table);
         let [effects, parts, layers, fills] = tables.collect::<Vec<_>>().try_into().unwrap();
         assert_eq!(effects.rows[0][4..], ["1.50", "10, without 8"]);

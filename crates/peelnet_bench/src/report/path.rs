@@ -1,4 +1,4 @@
-//! The files of `peelnet bench --path`: errors along a path, their change from frame to frame, and how visible the difference is.
+//! The files of `peelnet bench path`: errors along a path, their change from frame to frame, and how visible the difference is.
 
 use crate::chart::{Line, Scale, Svg, line_chart};
 use crate::report::{
@@ -222,7 +222,7 @@ mod tests {
             ],
             ..Along::default()
         };
-        let results = Results::new(machine(), "peelnet bench --path", along);
+        let results = Results::new(machine(), "peelnet bench path", along);
         let table = results.table();
         assert_eq!(table.rows[0][..2], ["depth-peel", "10.00"]);
         assert_eq!(table.rows[1][..2], ["wboit-eq9", "8.50"]);

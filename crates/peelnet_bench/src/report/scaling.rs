@@ -1,4 +1,4 @@
-//! The files of `peelnet bench --scaling`: how time and memory grow.
+//! The files of `peelnet bench scaling`: how time and memory grow.
 
 use crate::chart::{Line, Scale, line_chart};
 use crate::report::{Files, Measurement, Results, Table, files::csv, table::number};
@@ -90,7 +90,7 @@ mod tests {
             rows,
             left_out: Vec::new(),
         };
-        let results = Results::new(machine(), "peelnet bench --scaling", scaling);
+        let results = Results::new(machine(), "peelnet bench scaling", scaling);
         let dir = tempfile::tempdir().unwrap();
         let text = written(dir.path(), &results);
         assert!(text.contains("| b |") && text.contains("–"), "{text}");

@@ -1,13 +1,14 @@
-//! `peelnet bench --designs`: what designs of slabs are worth.
+//! `peelnet bench designs`: what designs of slabs are worth.
 
-use super::{Context, bench::report, json_path};
-use crate::cli::BenchArgs;
+use super::report;
+use crate::cli::DesignsArgs;
+use crate::commands::train::{seconds, warn_of_rows};
+use crate::commands::{Context, json_path};
 use crate::progress::Bar;
 use peelnet::Failure;
 use peelnet_bench::designs::{
     self, ANCHORED, DESIGNS, Designs, Entry, KBUFFER, MOMENTS, Measured, Reference, Row, Score,
 };
-use peelnet_bench::report::Results;
 use peelnet_core::files::{Unfinished, printable, shown};
 use peelnet_dataset::{Dataset, SplitBy, Subset};
 use peelnet_model::{Model, Recipe};
@@ -15,11 +16,10 @@ use peelnet_scene::Scene;
 use peelnet_train::{Config, End, RunOptions, TrainingData, train};
 use std::collections::BTreeSet;
 
-pub(super) fn run(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure> {
-    let inputs = args.scenes.iter().chain(&args.designs);
-    let mut outputs = context.outputs(inputs.chain(&args.designs_file));
-    context.results(&mut outputs, &args.out, &Results::<Designs>::files())?;
-    let entries = match &args.designs_file {
+pub(super) fn run(context: &Context<'_>, args: &DesignsArgs) -> Result<(), Failure> {
+    let inputs = args.scenes.iter().chain(&args.datasets).chain(&args.file);
+    let mut outputs = context.results::<Designs>(inputs, &args.out)?;
+    let entries = match &args.file {
         Some(path) => designs::read(path)?,
         None => designs::shipped(),
     };
@@ -29,7 +29,7 @@ pub(super) fn run(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure
     }
     let scenes = context.scenes(&args.scenes)?;
     context.begin(&mut outputs, &scenes)?;
-    let datasets = args.designs.iter().map(Dataset::open);
+    let datasets = args.datasets.iter().map(Dataset::open);
     let datasets = datasets.collect::<Result<Vec<_>, _>>()?;
     let trained_on = check_scenes(context, &scenes, &datasets)?;
     let gpu = context.gpu()?;
@@ -61,7 +61,7 @@ pub(super) fn run(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure
         let data = TrainingData::from_datasets(config, &datasets)?;
         context.check_interrupt()?;
         if k == 0 {
-            super::train::warn_of_rows(context, data.used, config);
+            warn_of_rows(context, data.used, config);
         }
         let options = RunOptions::new(scratch.path().join("model.safetensors"), context.stop);
         let outcome = train(config, &data, &options, |_| {})?;
@@ -80,13 +80,13 @@ pub(super) fn run(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure
         let (network, middle) = (measured(Some(&outcome.model))?, measured(None)?);
         rows.push(Row {
             examples,
-            seconds: super::train::seconds(&outcome),
+            seconds: seconds(&outcome),
             ..Row::new(entry, &outcome.model, network, middle)
         });
     }
     drop(bar);
     let found = Designs {
-        file: match &args.designs_file {
+        file: match &args.file {
             Some(path) => json_path(path),
             None => DESIGNS.to_owned(),
         },
@@ -106,14 +106,13 @@ pub(super) fn run(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure
     report(context, &gpu, &args.out, found, |r| r.table().plain())
 }
 
-fn config(entry: &Entry, args: &BenchArgs) -> Config {
-    let base = Config::for_recipe(entry.recipe);
+fn config(entry: &Entry, args: &DesignsArgs) -> Config {
     Config {
         // The scenes of the bench judge.
         split: SplitBy::Pixel,
         seed: entry.seed,
-        max_rows: args.max_rows.unwrap_or(base.max_rows),
-        ..base
+        max_rows: args.max_rows,
+        ..Config::for_recipe(entry.recipe)
     }
 }
 
@@ -133,7 +132,7 @@ fn check_scenes(
             let name = &manifest.scenes[part.scene as usize].name;
             if scenes.iter().any(|scene| scene.name == *name) {
                 return Err(Failure::wrong(format!(
-                    "--designs {}: the dataset holds scene '{}', which would judge what was trained on it; extract a dataset without it, or name \
+                    "{}: the dataset holds scene '{}', which would judge what was trained on it; extract a dataset without it, or name \
                      another scene",
                     shown(dataset.path()),
                     printable(name)
