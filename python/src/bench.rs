@@ -16,7 +16,7 @@ use peelnet::{
         bench::{Bench, Progress, bench_watched},
         compare::Plan,
         front::Point,
-        recommend::{Budget, judged},
+        recommend::{Budget, points_for},
         report::Results,
     },
 };
@@ -232,7 +232,7 @@ pub fn recommend<'py>(
             measured(py, scenes, &compared, plan, adapter, progress)?.rows
         }
     };
-    let (found, warning) = judged(&rows, &scene.name);
+    let (found, warning) = points_for(&rows, &scene.name);
     warning.iter().try_for_each(|text| warn(py, text))?;
     let budget = Budget {
         ms: budget_ms,

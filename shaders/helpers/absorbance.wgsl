@@ -1,4 +1,4 @@
-// Absorbance and warped depth; twin of peelnet_core::absorbance.
+// Absorbance and warped depth; as peelnet_core::absorbance.
 import package::scene::camera::camera;
 
 // exp(-16): an opaque fragment's absorbance is large, not infinite.

@@ -1,4 +1,4 @@
-// Constants that keep results finite; twin of peelnet_core::guards, where the reasons stand.
+// Constants that keep results finite; as peelnet_core::guards, where the reasons stand.
 const SUM_FLOOR: f32 = 5.9604645e-8;
 const HALF_MAX: f32 = 65504.0;
 const WEIGHT_FLOOR: f32 = 6.1035156e-5;

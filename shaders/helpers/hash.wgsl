@@ -1,4 +1,4 @@
-// PCG's output permutation (Jarzynski & Olano 2020); twin of peelnet_core::hash.
+// PCG's output permutation (Jarzynski & Olano 2020); as peelnet_core::hash.
 fn pcg(v: u32) -> u32 {
     let state = v * 747796405u + 2891336453u;
     let word = ((state >> ((state >> 28u) + 4u)) ^ state) * 277803737u;

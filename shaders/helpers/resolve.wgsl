@@ -1,5 +1,5 @@
 // The resolve of every normalised method: (sum C w / sum alpha w)(1 - T) + C_0 T.
-// Twin of peelnet_core::methods::wboit::normalised.
+// As peelnet_core::methods::wboit::normalised.
 import package::helpers::guards::{SUM_FLOOR, HALF_MAX};
 
 // What is left of sums where their targets ended: colours of 16-bit targets stop at the largest half, and some GPUs give

@@ -1,4 +1,4 @@
-// The view of one frame; twin of peelnet_render's `CameraUniform`.
+// The view of one frame; as peelnet_render's `CameraUniform`.
 struct Camera {
     clip_from_world: mat4x4f,
     // World-space position of the eye.

@@ -1,6 +1,6 @@
 // What materials are made of. The vertex shader hands on what every fragment reads: a storage buffer read at every fragment costs more.
 
-// Twin of peelnet_render's `MaterialData`.
+// As peelnet_render's `MaterialData`.
 struct Material {
     // Linear RGB and alpha.
     color: vec4f,

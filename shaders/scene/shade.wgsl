@@ -10,7 +10,7 @@ import package::scene::camera::camera;
 import package::scene::material::{Material, materials};
 import package::scene::surface::Surface;
 
-// Twin of peelnet_render's `LightData`.
+// As peelnet_render's `LightData`.
 @if(lit)
 struct Light {
     // A point; or, where `is_point` is 0, the direction that light comes from.

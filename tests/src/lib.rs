@@ -1,4 +1,4 @@
-//! What the tests share: one way to open a GPU, scenes with known answers, and the judge's view of a scene.
+//! What the tests share: one way to open a GPU, scenes with known answers, and the reference's view of a scene.
 #![allow(missing_docs, reason = "only tests use it")]
 
 pub mod readers;

@@ -19,7 +19,7 @@ mod ranges;
 mod references;
 mod report_in_browser;
 mod samples;
-mod shader_twins;
+mod shader_functions;
 mod surfaces;
 mod training_on_pixels;
 mod voxels;

@@ -34,8 +34,8 @@ fn a_silhouette_in_smoke_is_exact() {
         let t = (1.0 - ALPHA).powi(inside);
         let want = [0, 1, 2].map(|k| smoke[k] * (1.0 - t) + SILHOUETTE[k] * t);
         // Random samples hit their mean only in the mean.
-        let is_judged = |s: &MethodSpec| s.guarantees().normalised && !s.guarantees().noisy;
-        for spec in representatives().into_iter().filter(is_judged) {
+        let is_checked = |s: &MethodSpec| s.guarantees().normalised && !s.guarantees().noisy;
+        for spec in representatives().into_iter().filter(is_checked) {
             let image = draw(&gpu, &scene, &spec, [4, 4]);
             // Of one colour, half floats round sums of absorbance and of colour only: no root is magnified.
             let bound = half_sums(LAYERS as usize, 3.0);

@@ -1,7 +1,7 @@
-//! The three ways to peel against one another and against the 64-bit scan-line judge.
+//! The three ways to peel against one another and against the 64-bit scan-line reference.
 
 use glam::Vec3;
-use peelnet_bench::stress::judge::clip_triangles;
+use peelnet_bench::stress::ground_truth::clip_triangles;
 use peelnet_core::{hash, random::Random, scanline, tolerance::UNIT_ROUNDOFF};
 use peelnet_peel::{
     Peel,
@@ -21,7 +21,7 @@ const SNAP: f64 = 1.0 / 16.0;
 /// Depth of a fragment moves with its position: pixels where the slope is steep see the snapping. Relative.
 const DEPTH_TOLERANCE: f64 = 2e-3;
 
-/// Random triangles, three to an object: a closed form is not needed where a judge is.
+/// Random triangles, three to an object: a closed form is not needed where a reference is.
 fn mixed(objects: usize, seed: u64) -> Scene {
     scene("soup", [0.5; 3], soup(seed, objects, 3, [2.0, 32.0]))
 }
@@ -239,13 +239,13 @@ fn a_pixel_sample_keeps_whole_pixels_and_the_right_ones() {
 }
 
 #[test]
-fn the_judge_finds_the_same_fragments() {
+fn the_reference_finds_the_same_fragments() {
     let gpu = gpu();
     for seed in 20..24 {
         let scene = mixed(30, seed);
         let triangles = clip_triangles(&scene, &scene.views[0], SIZE);
         let [w, h] = SIZE.map(|s| s as usize);
-        let judge = scanline::rasterise(&triangles, w, h, [0.0; 2]);
+        let reference = scanline::rasterise(&triangles, w, h, [0.0; 2]);
         let stable = scanline::stable_pixels(&triangles, w, h, SNAP);
         let (peeled, _) = read_pixels(&gpu, &scene, Peel::SBuffer, None, None);
         let (mut judged, mut fragments) = (0, 0);
@@ -254,7 +254,7 @@ fn the_judge_finds_the_same_fragments() {
                 continue;
             }
             judged += 1;
-            let (want, got) = (&judge.pixels[i], &peeled[i]);
+            let (want, got) = (&reference.pixels[i], &peeled[i]);
             assert_eq!(want.len(), got.len(), "pixel {i}, seed {seed}");
             for (k, (want, (depth, color))) in want.iter().zip(got).enumerate() {
                 fragments += 1;
@@ -264,8 +264,8 @@ fn the_judge_finds_the_same_fragments() {
                 let apart = |j: Option<&scanline::Hit>| {
                     j.is_none_or(|o| (o.depth / want.depth - 1.0).abs() > 2.0 * DEPTH_TOLERANCE)
                 };
-                let before = k.checked_sub(1).and_then(|k| judge.pixels[i].get(k));
-                if apart(before) && apart(judge.pixels[i].get(k + 1)) {
+                let before = k.checked_sub(1).and_then(|k| reference.pixels[i].get(k));
+                if apart(before) && apart(reference.pixels[i].get(k + 1)) {
                     let material = &scene.objects[want.id as usize / 3].materials[0];
                     assert_eq!(color[3], material.alpha);
                     assert_eq!(color[..3], material.color);

@@ -130,9 +130,9 @@ fn normalised(fragments: &[Fragment], background: [f32; 3]) -> Vec<(&str, [f32; 
         position: [3, 5],
         model: None,
     };
-    let twins = POINTS.iter();
-    let twins =
-        twins.filter_map(|(name, vanishes, s)| Some((&**name, s.reference(&pixel)?, *vanishes)));
+    let references = POINTS.iter();
+    let references = references
+        .filter_map(|(name, vanishes, s)| Some((&**name, s.reference(&pixel)?, *vanishes)));
     let ends = [("anchored", false), ("anchored, separate ends", true)];
     let anchored = ends.map(|(name, ends)| {
         let color = anchored::composite(fragments, background, &pixel.warp, ends, share);
@@ -147,7 +147,7 @@ fn normalised(fragments: &[Fragment], background: [f32; 3]) -> Vec<(&str, [f32; 
         let color = slabs::composite(fragments, background, &pixel.warp, design, guess);
         (name, color, false)
     });
-    twins.chain(anchored).chain(in_slabs).collect()
+    references.chain(anchored).chain(in_slabs).collect()
 }
 
 /// Twenty roundings of each of `n` sums of values ≤ 1, relative to what is divided by: the same terms.
@@ -196,7 +196,7 @@ proptest! {
             let exact = over::composite(&f, c0);
             let slack = if is_faint(&f) { 1e-4 } else { rounding(f.len()) };
             for (name, color, vanishes) in normalised(&f, c0) {
-                // The published weights end at 2^-24 of opacity times weight: depths of 1e30 vanish, a declared flaw.
+                // The published weights end at 2^-24 of opacity times weight: depths of 1e30 vanish, a known failure.
                 let vanishes = vanishes && f.iter().any(|f| f.depth > 1e2);
                 for k in 0..3 {
                     let all = || f.iter().map(|f| f.color[k]).chain([c0[k]]);

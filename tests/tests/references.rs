@@ -1,7 +1,7 @@
 //! The GPU draws what the CPU references compute: every method, on lists of fragments from three sources.
 //!
-//! Closed forms and random lists are drawn side by side in one frame and compared with the reference that each method declares; hard cases are
-//! those of `peelnet stress`, judged by the properties that methods promise, and a known failure must keep failing. One representative of
+//! Closed forms and random lists are drawn side by side in one frame and compared with the reference that each method declares; stress cases are
+//! those of `peelnet stress`, judged by the properties that methods guarantee, and a known failure must keep failing. One representative of
 //! every method runs in `cargo xtask test`, every point of every method's curve in `cargo xtask test --all`.
 
 use glam::Vec3;
@@ -33,9 +33,9 @@ const FULL: f32 = 1e-4;
 /// The largest difference between a pixel of `n` layers and the reference, where moments may err by `moments`; `None` where the error of 16-bit statistics has no simple
 /// bound, because roots of them are taken.
 fn bound(spec: &MethodSpec, n: usize, moments: f32) -> Option<f32> {
-    let promises = spec.guarantees();
-    match (promises.root, promises.statistics, promises.sums) {
-        _ if promises.exact => Some(peelnet_core::tolerance::EXACT as f32),
+    let guarantees = spec.guarantees();
+    match (guarantees.root, guarantees.statistics, guarantees.sums) {
+        _ if guarantees.exact => Some(peelnet_core::tolerance::EXACT as f32),
         (Some(_), Precision::Half, _) => None,
         (Some(_), Precision::Full, Precision::Full) => Some(moments),
         (Some(_), Precision::Full, Precision::Half) => Some(moments + half_sums(n, 1.0)),
@@ -260,7 +260,7 @@ fn stress_case(name: &str, methods: Vec<MethodSpec>) {
     let failed: Vec<_> = rows.iter().filter(|r| r.result == Outcome::Fail).collect();
     let (count, all) = (failed.len(), rows.len());
     assert!(count == 0, "{count} of {all} rows fail:\n{failed:#?}");
-    for s in subjects.iter().filter(|s| case.judges(&s.method)) {
+    for s in subjects.iter().filter(|s| case.applies_to(&s.method)) {
         let method = s.method.to_string();
         assert!(rows.iter().any(|r| r.method == method), "{method}");
     }

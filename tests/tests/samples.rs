@@ -73,7 +73,7 @@ fn coverage_comes_in_quarters() {
     }
 }
 
-/// A pixel cut by the edges of two surfaces is, for every method, the mean of what its CPU twin makes of the fragments of each sample: one
+/// A pixel cut by the edges of two surfaces is, for every method, the mean of what its CPU reference makes of the fragments of each sample: one
 /// sample holds both, one the nearer, one the farther surface, and one none. Means of statistics would give another colour.
 #[test]
 fn a_pixel_is_the_mean_of_its_samples() {
@@ -113,13 +113,13 @@ fn a_pixel_is_the_mean_of_its_samples() {
             }
             Some(mean)
         };
-        // Random numbers of a pixel's position are other ones in every row, and twins know nothing of the neighbours, which hold other surfaces.
-        let promises = spec.guarantees();
-        let alone = promises.per_pixel && !promises.noisy;
+        // Random numbers of a pixel's position are other ones in every row, and references know nothing of the neighbours, which hold other surfaces.
+        let guarantees = spec.guarantees();
+        let alone = guarantees.per_pixel && !guarantees.noisy;
         let Some(want) = mean().filter(|_| alone) else {
             continue;
         };
-        let tolerance = match (promises.root, promises.sums, promises.statistics) {
+        let tolerance = match (guarantees.root, guarantees.sums, guarantees.statistics) {
             (Some(_), _, Precision::Full) => ROOTS,
             // Errors of 16-bit statistics have no simple bound where roots are taken.
             (Some(_), ..) => continue,

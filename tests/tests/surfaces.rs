@@ -18,7 +18,7 @@ use peelnet_tests::{
 };
 use std::sync::Arc;
 
-/// Lit surfaces against the 64-bit twin, pixel by pixel: 1e-4 of the brightest. With and without a directional light; with and
+/// Lit surfaces against the 64-bit reference, pixel by pixel: 1e-4 of the brightest. With and without a directional light; with and
 /// without textures, whose values multiply the material's, and tilted normals.
 #[test]
 fn shading_is_the_twin_of_the_core() {
@@ -40,13 +40,13 @@ fn shading_is_the_twin_of_the_core() {
                 (material.metallic, material.roughness) = (first, second);
                 let mut lights = lamps.to_vec();
                 lights.extend(sunny.then_some(sun));
-                compare_with_the_twin(&gpu, material, &lights, mapped);
+                compare_with_the_reference(&gpu, material, &lights, mapped);
             }
         }
     }
 }
 
-fn compare_with_the_twin(gpu: &Gpu, mut material: Material, lights: &[Light], mapped: bool) {
+fn compare_with_the_reference(gpu: &Gpu, mut material: Material, lights: &[Light], mapped: bool) {
     let size = [24u32, 16];
     let byte = |b: u8| f64::from(b) / 255.0;
     let mut color = DVec3::from(material.color.map(f64::from));
@@ -76,7 +76,9 @@ fn compare_with_the_twin(gpu: &Gpu, mut material: Material, lights: &[Light], ma
     let mut scene = scene("lit", [0.0; 3], vec![object]);
     scene.lights = lights.to_vec();
     let image = draw(gpu, &scene, "abuffer", size);
-    let lights = lights.iter().map(peelnet_bench::stress::judge::light);
+    let lights = lights
+        .iter()
+        .map(peelnet_bench::stress::ground_truth::light);
     let lights: Vec<shading::Light> = lights.collect();
     for (i, pixel) in image.pixels.iter().enumerate() {
         let (x, y) = (i as u32 % size[0], i as u32 / size[0]);
@@ -320,12 +322,12 @@ fn emission_is_exact_on_a_single_surface() {
                 false => spec,
             };
             // Of few samples none may see a faint surface; a coverage of 0.01 in half floats errs by a twentieth.
-            let promises = spec.guarantees();
-            if faint && (promises.noisy || promises.sums == Precision::Half) {
+            let guarantees = spec.guarantees();
+            if faint && (guarantees.noisy || guarantees.sums == Precision::Half) {
                 continue;
             }
             let image = draw(&gpu, &scene, &spec, [4, 3]);
-            let bound = if promises.exact { 1e-5 } else { 16.0 * HALF };
+            let bound = if guarantees.exact { 1e-5 } else { 16.0 * HALF };
             assert_all(&image, want, bound, format!("{spec}, alpha {alpha}"));
         }
     }

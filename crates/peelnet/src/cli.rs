@@ -395,13 +395,13 @@ pub struct ViewArgs {
   peelnet stress --methods mboit4,deep-medium --cases deep,coplanar
   peelnet stress --json | jq '.rows[] | select(.result == \"fail\")'
 
-Exit code 1 if a property fails that is not declared as a flaw on this adapter, or if a declared flaw no longer occurs. DIR gets stress.json,
+Exit code 1 if a property fails that is not a known failure on this adapter, or if a known failure no longer occurs. DIR gets stress.json,
 stress.csv, stress.md, stress.html, and pictures of what fails in images/.")]
 pub struct StressArgs {
     /// Methods, separated by commas; all means every method in every precision
     #[arg(long, value_name = "all|A,B", default_value = "all", value_parser = methods)]
     pub methods: OrAll<Vec<MethodSpec>>,
-    /// Model files of learned methods, separated by commas; without --methods only these are judged
+    /// Model files of learned methods, separated by commas; without --methods only these are checked
     #[arg(
         long,
         visible_alias = "model",

@@ -159,9 +159,9 @@ fn a_failure_is_exit_code_1_with_pictures() {
     }
 }
 
-/// A network of one's own is judged alone, in both precisions, and declared flaws that it does not have are no failures.
+/// A network of one's own is checked alone, in both precisions, and known failures that it does not have are no failures.
 #[test]
-fn a_network_of_ones_own_is_judged_alone() {
+fn a_network_of_ones_own_is_checked_alone() {
     let folder = Folder::new(&[]);
     folder.write_model("m.safetensors", peelnet::Recipe::ANCHORED_SMALL);
     let answer = folder.json("stress --model m.safetensors --cases coplanar,half-float");

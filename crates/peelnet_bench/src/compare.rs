@@ -23,13 +23,13 @@ pub use crate::stage::EXACT;
 #[derive(Clone, Debug)]
 pub struct Plan<'a> {
     pub size: [u32; 2],
-    /// Samples a pixel, 1 or 4, of all methods and of the exact image that judges them.
+    /// Samples a pixel, 1 or 4, of all methods and of the exact image that they are compared with.
     pub samples: u32,
     /// Methods in addition to the exact one; the exact one may be among them.
     pub methods: &'a [MethodSpec],
     /// Weights for the learned methods among them, found by recipe.
     pub learned: &'a [LearnedWeight],
-    /// The models of those weights; the estimates of those given here are judged fragment by fragment.
+    /// The models of those weights; the estimates of those given here are compared fragment by fragment.
     pub models: &'a [Model],
     /// Whether a method that needs more than this adapter allows is left out and reported, instead of ending the comparison.
     pub lenient: bool,

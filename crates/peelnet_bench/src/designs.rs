@@ -3,7 +3,7 @@
 //! Designs are data ([`read`]): one entry each. A caller trains the network of an entry ([`Entry::recipe`]) and measures it here
 //! ([`Entry::measure`]) on whole frames that [`peel`] holds in memory. Pixels are composited on the CPU with statistics rounded as 16-bit
 //! targets round them; colours are not rounded. The errors are ratios to those of two references on the same fragments ([`MOMENTS`] and
-//! [`KBUFFER`]), composited by their CPU twins.
+//! [`KBUFFER`]), composited by their CPU references.
 
 mod file;
 mod ranges;

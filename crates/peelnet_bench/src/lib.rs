@@ -1,8 +1,8 @@
-//! Measures methods: errors against the exact image, times, memory and hard cases.
+//! Measures methods: errors against the exact image, times, memory and stress cases.
 //!
 //! ```text
 //! scenes ─► bench: compare every view ─► rows (method × scene × view) ─► rows, front ─► recommend
-//! hard cases ─► stress ─► rows (method × case × property)
+//! stress cases ─► stress ─► rows (method × case × property)
 //! path: every frame of a moving camera and moving objects ─► rows (method × scene, and × frame)
 //! designs: fragments of a scene, composited on the CPU with each design of slabs ─► rows (design)
 //! effects, scaling ─► rows of their own

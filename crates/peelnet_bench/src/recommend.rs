@@ -25,7 +25,7 @@ pub struct Recommendation<'a> {
 }
 
 /// The points of a scene among the rows; where it is not among them those over all scenes, and a warning that says so.
-pub fn judged(rows: &[Row], scene: &str) -> (Vec<Point>, Option<String>) {
+pub fn points_for(rows: &[Row], scene: &str) -> (Vec<Point>, Option<String>) {
     let rows = Rows::new(rows);
     let own = points(&rows.of_scene(scene), Mean::Geometric);
     if !own.is_empty() {

@@ -221,7 +221,7 @@ pub enum Outcome {
     Pass,
     /// It does not, as the method declares.
     Declared,
-    /// It does not, or it does although the method declares a flaw.
+    /// It does not, or it does although the failure is known.
     Fail,
 }
 

@@ -1,4 +1,4 @@
-//! Absorbance, and the warped depth that its moments are taken of. The shader twin is `helpers/absorbance.wgsl`.
+//! Absorbance, and the warped depth that its moments are taken of. The shader is `helpers/absorbance.wgsl`.
 
 /// The largest absorbance of one fragment: `e⁻¹⁶ ≈ 1e−7` is opaque to any display, and sums of it stay small enough for
 /// accumulators.
@@ -18,7 +18,7 @@ pub fn absorbance(alpha: f32) -> f64 {
 
 /// Maps depth to −1 … 1 by its logarithm over a range (Münstermann et al. 2018, §3.1): ratios of depth become
 /// differences, so that near and far layers are resolved equally well. A range whose near end is not above 0, as orthographic
-/// cameras may have, is mapped linearly. The shader twin for networks is `learned/zeta.wgsl`.
+/// cameras may have, is mapped linearly. The same for networks is `learned/zeta.wgsl`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DepthWarp {
     near: f64,

@@ -1,4 +1,4 @@
-//! Constants that keep results finite, each with its reason. Their shader twins are compared by a test.
+//! Constants that keep results finite, each with its reason. They are compared with those of the shaders by a test.
 
 /// The smallest weight a learned transmittance may become: `2⁻¹⁴`, the smallest normal half float.
 ///
@@ -7,7 +7,7 @@
 /// 16-bit target can still hold it.
 pub const WEIGHT_FLOOR: f32 = 1.0 / 16384.0;
 
-/// The divisor's floor in the resolve of weighted methods with 16-bit targets. With 32-bit ones, and in the CPU twins, it is the
+/// The divisor's floor in the resolve of weighted methods with 16-bit targets. With 32-bit ones, and in the CPU references, it is the
 /// smallest normal number.
 ///
 /// `2⁻²⁴` is the smallest positive half float: a sum of weights that a 16-bit target can distinguish from zero is never

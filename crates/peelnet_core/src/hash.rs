@@ -9,7 +9,7 @@ pub const fn pcg(v: u32) -> u32 {
 
 /// Whether the pixel (x, y) of a view belongs to a sample: `hash(seed, view, x, y) < threshold`.
 ///
-/// [`sample_threshold`] turns a fraction into the threshold. The shader twin is `helpers/hash.wgsl`.
+/// [`sample_threshold`] turns a fraction into the threshold. The shader is `helpers/hash.wgsl`.
 pub const fn pixel_hash(seed: u32, view: u32, x: u32, y: u32) -> u32 {
     pcg(pcg(pcg(pcg(seed) ^ view) ^ x) ^ y)
 }

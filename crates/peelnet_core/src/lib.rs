@@ -1,7 +1,7 @@
 //! The mathematics of transparency, without GPU, scenes or training; and, below all other crates, the rules of files ([`files`]).
 //!
 //! A pixel is a list of [`fragment::Fragment`]s. [`methods`] turns such a list into a colour: exactly
-//! ([`methods::over`]) or approximately, one file per method, and every GPU method has its twin here. [`weights`]
+//! ([`methods::over`]) or approximately, one file per method, and every learned GPU method has its CPU reference here. [`weights`]
 //! holds the published weight functions, [`mlp`] the network's forward pass, [`scanline`] a 64-bit rasteriser that
 //! judges what the GPU peels, and [`tolerance`] the error bounds that tests may use, each with its reason.
 //!

@@ -1,4 +1,4 @@
-//! A 64-bit scan-line A-buffer: the judge of what the GPU peels.
+//! A 64-bit scan-line A-buffer: the reference of what the GPU peels.
 //!
 //! Deliberately another algorithm than the GPU's (Carpenter's A-buffer over a scan-line walk rather than passes over
 //! the whole frame) and another arithmetic: triangles are clipped in homogeneous coordinates, each is walked row by

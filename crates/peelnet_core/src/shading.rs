@@ -1,4 +1,4 @@
-//! Shading in 64 bits: the twin of `shaders/scene/shade.wgsl`, which cites the sources.
+//! Shading in 64 bits: the same as `shaders/scene/shade.wgsl`, which cites the sources.
 
 use glam::DVec3;
 use std::f64::consts::PI;

@@ -1,7 +1,7 @@
 //! The statistics of a pixel that the learned methods gather in their first pass.
 //!
 //! Pass 1 sums absorbance `b_i` and its moments over warped depth, `b_k = Σ b_i ζ_i^k`, and keeps the pixel's nearest and
-//! farthest ζ with their opacities. What the networks read of them is said by the inputs of `peelnet_model`. The shader twin is
+//! farthest ζ with their opacities. What the networks read of them is said by the inputs of `peelnet_model`. The shader is
 //! `learned/anchored.wgsl`, part of every exported text.
 //!
 //! A fragment's own share is taken out before it asks what lies in front of it, as in the write-up of wavelet transparency by Osorio

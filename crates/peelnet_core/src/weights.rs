@@ -1,4 +1,4 @@
-//! Published weights of weighted blended transparency; the shader twin is `helpers/weights.wgsl`.
+//! Published weights of weighted blended transparency; the shader is `helpers/weights.wgsl`.
 //!
 //! Equation numbers are those of McGuire & Bavoil, "Weighted Blended Order-Independent Transparency", JCGT 2(2),
 //! 2013. Powers are repeated products, as the shaders compute them.
@@ -116,7 +116,7 @@ mod tests {
         }
     }
 
-    /// The published flaw of weights of depth in scene units: moved along z with all that lies between them kept, two surfaces
+    /// The known failure of weights of depth in scene units: moved along z with all that lies between them kept, two surfaces
     /// mix anew. The share of the nearer one is `w₁ / (w₁ + w₂)`, at 2 and 4, and at 102 and 104. The thesis's weight is exactly α up to a
     /// depth of 149, so it does not see the move, nor the order.
     #[test]

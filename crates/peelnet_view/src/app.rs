@@ -8,7 +8,7 @@ use crate::{
     inspect::Inspector,
     memory,
     messages::Messages,
-    numbers::{EXACT, Judge, Key, LayerCounter},
+    numbers::{EXACT, ErrorJob, Key, LayerCounter},
     output::Output,
     panels::state::State,
     script::Script,
@@ -91,7 +91,7 @@ pub(crate) struct App {
     pub first: Slot,
     pub second: Slot,
     pub compare: Compare,
-    pub judge: Judge,
+    pub errors: ErrorJob,
     pub counter: LayerCounter,
     pub inspector: Inspector,
     pub front: Front,
@@ -135,7 +135,7 @@ impl App {
                 divider: 0.5,
                 scale: 16.0,
             },
-            judge: Judge::default(),
+            errors: ErrorJob::default(),
             counter: LayerCounter::default(),
             inspector: Inspector::default(),
             front: Front::default(),
@@ -232,7 +232,7 @@ impl App {
         {
             self.first.set_spec(spec);
         }
-        self.judge.cancel();
+        self.errors.cancel();
         self.first.set_network(Some(network));
         self.watch
             .follow(Some(source.path).filter(|_| source.dropped.is_none()));
@@ -247,7 +247,7 @@ impl App {
     }
 
     fn cancel(&mut self) {
-        self.judge.cancel();
+        self.errors.cancel();
         self.counter.cancel();
         self.inspector.job.cancel();
         self.front.job.cancel();
@@ -275,7 +275,7 @@ impl App {
         }
         self.first.poll(ui);
         self.second.poll(ui);
-        self.judge.poll(ui);
+        self.errors.poll(ui);
         self.counter.poll(ui);
         self.inspector.job.poll(ui);
         self.front.job.poll(ui);
@@ -371,7 +371,7 @@ impl App {
             ui.request_repaint_after(Duration::from_secs_f64(REST));
         } else if let Some(stage) = self.stage.as_ref().filter(|s| s.shown.layers.is_none()) {
             if self.panels.measures {
-                self.judge.want(stage, &self.first, key.clone());
+                self.errors.want(stage, &self.first, key.clone());
             }
             self.inspector.want(stage, &self.first, key);
         }

@@ -30,9 +30,9 @@ pub(crate) struct Numbers {
 }
 
 /// Measures again whenever the view or the method has changed and rests.
-pub(crate) type Judge = Job<Key, Numbers>;
+pub(crate) type ErrorJob = Job<Key, Numbers>;
 
-impl Judge {
+impl ErrorJob {
     pub fn want(&mut self, stage: &Stage, slot: &Slot, key: Key) {
         if self.wants(&key) {
             let last = self.last.as_ref().filter(|(of, _)| of.view == key.view);

@@ -282,8 +282,8 @@ fn errors_are_measured_while_the_view_rests() {
         w.state_mut().first.set_spec(method.parse().unwrap());
         steps(&mut w);
         let key = w.state().key().unwrap();
-        until(&mut w, "measured", |app| app.judge.get(&key).is_some());
-        let numbers = w.state().judge.get(&key).unwrap().as_ref().unwrap();
+        until(&mut w, "measured", |app| app.errors.get(&key).is_some());
+        let numbers = w.state().errors.get(&key).unwrap().as_ref().unwrap();
         assert_eq!(numbers.differences.mse255 > 0.0, errs);
         assert_eq!(numbers.flip.is_some_and(|x| x > 0.0), errs);
         assert!(numbers.stats.fragments.is_some_and(|n| n > 0));

@@ -1,4 +1,4 @@
-// The grid of voxels: columns of CELL x CELL pixels, each of SLICES intervals of warped depth; twin of peelnet_core::methods::avboit.
+// The grid of voxels: columns of CELL x CELL pixels, each of SLICES intervals of warped depth; as peelnet_render::methods::avboit.
 import package::parameters::{CELL, SLICES};
 
 // Sums of absorbance are whole numbers of this share, so that atomics can add them in any order.

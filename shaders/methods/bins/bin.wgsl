@@ -1,4 +1,4 @@
-// The bin of a fragment, and what it adds to it; twin of peelnet_core::methods::bins.
+// The bin of a fragment, and what it adds to it; as peelnet_render::methods::bins.
 import package::helpers::absorbance::absorbance;
 import package::parameters::BINS;
 

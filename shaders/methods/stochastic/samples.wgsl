@@ -1,4 +1,4 @@
-// Which of its pixel's samples a fragment covers (Enderton et al. 2010); twin of peelnet_core::methods::stochastic.
+// Which of its pixel's samples a fragment covers (Enderton et al. 2010); as peelnet_render::methods::stochastic.
 import package::helpers::hash::{pcg, pixel_hash};
 import package::parameters::SAMPLES;
 import package::scene::camera::camera;

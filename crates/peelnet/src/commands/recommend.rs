@@ -4,7 +4,7 @@ use peelnet::Failure;
 use peelnet_bench::{
     compare::Plan,
     front::{Point, untimed},
-    recommend::{Budget, judged},
+    recommend::{Budget, points_for},
     rows::Rows,
 };
 use serde_json::json;
@@ -23,7 +23,7 @@ pub(super) fn run(context: &Context<'_>, args: &RecommendArgs) -> Result<(), Fai
         }
     };
     let rows = &results.measured.rows;
-    let (points, warning) = judged(rows, &scene.name);
+    let (points, warning) = points_for(rows, &scene.name);
     let from = match warning {
         Some(text) => {
             context.console.warn(text);

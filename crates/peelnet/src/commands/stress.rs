@@ -24,15 +24,15 @@ pub(super) fn run(context: &Context<'_>, args: &StressArgs) -> Result<(), Failur
     let own_only = !args.models.is_empty() && args.methods.is_none();
     let all = || {
         let all = Subject::all_methods().into_iter();
-        // A user's own network is judged alone.
+        // A user's own network is checked alone.
         all.filter(|m| !own_only || m.needs_model()).collect()
     };
     let named = args.methods.as_deref();
     let (compared, learned) = compared(context, &gpu, named, &args.models, all)?;
     let own = &compared.models[..args.models.len()];
-    let is_judged = |name: &str| !own_only || own.iter().any(|m| m.meta.recipe.method == name);
-    let judged = compared.methods.iter().filter(|m| is_judged(m.name()));
-    let subjects: Vec<Subject> = judged
+    let is_checked = |name: &str| !own_only || own.iter().any(|m| m.meta.recipe.method == name);
+    let checked = compared.methods.iter().filter(|m| is_checked(m.name()));
+    let subjects: Vec<Subject> = checked
         .map(|method| {
             let mut networks = learned.iter().zip(&compared.models);
             let network = networks.find(|(l, _)| l.recipe.method == method.name());
@@ -43,7 +43,7 @@ pub(super) fn run(context: &Context<'_>, args: &StressArgs) -> Result<(), Failur
     let bar = Bar::new(context.console, "stress", steps);
     let mut rows = Vec::new();
     let images = args.out.as_ref().map(|out| out.join("images"));
-    // A declared flaw must fail with the shipped networks only.
+    // a known failure must fail with the shipped networks only.
     let strict = args.models.is_empty();
     for (case, k) in cases.iter().zip(0..) {
         let mut drawn = 0;
@@ -80,7 +80,7 @@ pub(super) fn run(context: &Context<'_>, args: &StressArgs) -> Result<(), Failur
     Err(Failure::failed(format!("{what} not hold; {see}")))
 }
 
-/// The matrix, the flaws with their reasons, and the failures.
+/// The matrix, the known failures with their reasons, and the failures.
 fn text(results: &Results<Stressed>) -> String {
     let mut text = String::new();
     let mut matrix = results.matrix();
@@ -91,12 +91,12 @@ fn text(results: &Results<Stressed>) -> String {
     }
     text.push('\n');
     text.push_str(&matrix.plain());
-    text.push_str("\n· all properties hold   d declared flaws   F failures\n");
-    let flaws = results.flaws().rows;
-    if !flaws.is_empty() {
-        text.push_str("\nDeclared flaws\n");
+    text.push_str("\n· all properties hold   d known failures   F failures\n");
+    let known = results.known_failures().rows;
+    if !known.is_empty() {
+        text.push_str("\nKnown failures\n");
     }
-    for c in flaws {
+    for c in known {
         let [what, reason, place, case] = [&c[0], &c[1], &c[2], &c[3]];
         text.push_str(&format!("- {what} ({case}): {reason}\n    in {place}\n"));
     }

@@ -203,7 +203,7 @@ impl View {
         Some(error_image(&shown.image.pixels, &image))
     }
 
-    /// The error of a method's CPU twin. What has none, or lacks its network, leaves pixels black.
+    /// The error of a method's CPU reference. What has none, or lacks its network, leaves pixels black.
     pub fn measure_method(&self, method: &MethodSpec, model: Option<&Model>) -> Measured {
         self.measure_moving(|stack| {
             let pixel = Pixel {

@@ -139,7 +139,7 @@ impl Take<'_, '_> {
         &mut self,
         method: &MethodSpec,
         exact: &Exact,
-        judge: &Cvvdp,
+        metric: &Cvvdp,
     ) -> Result<(PathRow, Vec<FrameRow>), EvalError> {
         let (name, scene) = (method.to_string(), self.stage.scene.name.clone());
         let mut strip = Strip::new(self.plan.size, self.moments.len());
@@ -171,7 +171,7 @@ impl Take<'_, '_> {
         })?;
         self.save(&strip, &name)?;
         // Frames that are too small for the metric are no video.
-        let jod = (!video.is_empty()).then(|| video::jod(judge, &video, &exact.video));
+        let jod = (!video.is_empty()).then(|| video::jod(metric, &video, &exact.video));
         let mse_8bit = squares_8bit / rows.len() as f64;
         Ok((path_row(&rows, mse_8bit, jod.transpose()?), rows))
     }
@@ -204,7 +204,7 @@ pub fn measure(
     }
     let methods = plan.methods.iter().filter(|m| **m != exact_method());
     let methods: Vec<&MethodSpec> = methods.collect();
-    let judge = video::judge()?;
+    let metric = video::metric()?;
     let mut found = Along {
         size: plan.size,
         samples: plan.samples,
@@ -227,7 +227,7 @@ pub fn measure(
         for method in &methods {
             let why = match method.method().cpu_only {
                 Some(why) if plan.lenient => why.to_owned(),
-                _ => match take.measure(method, &exact, &judge) {
+                _ => match take.measure(method, &exact, &metric) {
                     Err(e) if plan.lenient && e.is_too_large() => e.reason(),
                     measured => {
                         let (row, by_frame) = measured?;

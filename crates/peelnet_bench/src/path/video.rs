@@ -25,13 +25,13 @@ pub(super) fn frame(shown: &Displayed) -> Result<Option<Image>, EvalError> {
 }
 
 /// The metric (Mantiuk et al. 2024) on its display, with all settings as published.
-pub(super) fn judge() -> Result<Cvvdp, EvalError> {
+pub(super) fn metric() -> Result<Cvvdp, EvalError> {
     let display = DisplayModel::from_name(DISPLAY)?;
     Ok(Cvvdp::new(display, Options::default())?)
 }
 
 /// Just-objectionable differences between a video and the exact one, 10 for no visible difference and less for worse.
-pub(super) fn jod(judge: &Cvvdp, video: &[Image], exact: &[Image]) -> Result<f64, EvalError> {
-    let found = judge.predict_video(video, exact, FPS, Color::Srgb)?;
+pub(super) fn jod(metric: &Cvvdp, video: &[Image], exact: &[Image]) -> Result<f64, EvalError> {
+    let found = metric.predict_video(video, exact, FPS, Color::Srgb)?;
     Ok(f64::from(found.jod))
 }

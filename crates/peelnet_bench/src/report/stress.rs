@@ -18,7 +18,7 @@ impl Measurement for Stressed {
 }
 
 impl Results<Stressed> {
-    /// A row for each method: passes, declared flaws (`d` and their number) and failures (`F`) in each case.
+    /// A row for each method: passes, known failures (`d` and their number) and failures (`F`) in each case.
     pub fn matrix(&self) -> Table {
         let rows = &self.measured.rows;
         let methods = each_once(rows.iter().map(|r| r.method.as_str()));
@@ -62,8 +62,8 @@ impl Results<Stressed> {
         )
     }
 
-    /// The declared flaws, those of one reason together: property, methods, cases, worst value as a multiple of its limit.
-    pub fn flaws(&self) -> Table {
+    /// The known failures, those of one reason together: property, methods, cases, worst value as a multiple of its limit.
+    pub fn known_failures(&self) -> Table {
         let mut groups: BTreeMap<(Property, &str), Vec<&Row>> = BTreeMap::new();
         for row in self.measured.rows_with(Outcome::Declared) {
             let reason = row.reason.as_deref().unwrap_or_default();
@@ -90,7 +90,7 @@ impl Results<Stressed> {
     fn exceptions(&self) -> impl Iterator<Item = (&'static str, Table)> {
         let all = [
             ("Failures", self.failures()),
-            ("Declared flaws", self.flaws()),
+            ("Known failures", self.known_failures()),
         ];
         all.into_iter().filter(|(_, table)| !table.rows.is_empty())
     }
@@ -103,7 +103,7 @@ impl Results<Stressed> {
             .map(|(title, table)| format!("\n## {title}\n\n{}", table.markdown()))
             .collect();
         format!(
-            "# Hard cases\n\n{}. In the table · is a case whose properties hold, d a number of declared flaws, F of failures.\n{sections}\n{}\n",
+            "# Stress cases\n\n{}. In the table · is a case whose properties hold, d a number of known failures, F of failures.\n{sections}\n{}\n",
             self.measured.summary(),
             self.credit(),
         )
@@ -119,7 +119,7 @@ impl Results<Stressed> {
         let body = html! {
             p { (self.measured.summary()) "." }
             p.note {
-                "· all properties of the case hold; d: number of declared flaws; F: number of failures. Methods with a failure are orange."
+                "· all properties of the case hold; d: number of known failures; F: number of failures. Methods with a failure are orange."
             }
             (matrix.html("matrix", fails))
             @for (title, table) in self.exceptions() {
@@ -129,7 +129,7 @@ impl Results<Stressed> {
             h2 { "The cases" }
             (cases.html("text", |_| false))
         };
-        page::page(self, "Hard cases", body, &[], None)
+        page::page(self, "Stress cases", body, &[], None)
     }
 }
 
@@ -162,12 +162,12 @@ mod tests {
         assert_eq!(matrix.headings, ["method", "deep", "far"]);
         assert_eq!(matrix.rows, [["a", "d1", "·"], ["b", "d1", "F1"]]);
         assert_eq!(
-            results.flaws().rows,
+            results.known_failures().rows,
             [["hull", "a, b", "deep", "rounds", "2.0"]]
         );
         let dir = tempfile::tempdir().unwrap();
         let page = written(dir.path(), &results);
         assert!(page.contains("pixel &lt;3&gt;") && !page.contains("pixel <3>"));
-        assert!(page.contains("1 property holds, 2 declared flaws, 1 failure"));
+        assert!(page.contains("1 property holds, 2 known failures, 1 failure"));
     }
 }

@@ -1,4 +1,4 @@
-//! The hard cases: small generated scenes, most of them stacks of quads whose every pixel is known.
+//! The stress cases: small generated scenes, most of them stacks of quads whose every pixel is known.
 
 use super::{
     Case, Work, network,
@@ -9,7 +9,7 @@ use glam::Vec3;
 use peelnet_core::{fragment::Fragment, guards::EMISSIVE_ALPHA};
 use peelnet_scene::{Camera, Light, Lighting, Material, Object, Source, suite};
 
-/// Every hard case, in the order of the specification.
+/// Every stress case, in the order of the specification.
 pub const CASES: &[Case] = &[
     Case {
         id: "alpha-zero",
@@ -287,9 +287,9 @@ pub const CASES: &[Case] = &[
             let hidden = object("behind", triangle, [1.0; 3], 0.5);
             let none = object("none", [], [1.0; 3], 0.5);
             vec![
-                Trial::judged("behind the camera", PLANES, vec![hidden]),
-                Trial::judged("no triangle", PLANES, vec![none]),
-                Trial::judged("no object", PLANES, vec![]),
+                Trial::rasterised("behind the camera", PLANES, vec![hidden]),
+                Trial::rasterised("no triangle", PLANES, vec![none]),
+                Trial::rasterised("no object", PLANES, vec![]),
             ]
         }),
     },
@@ -356,7 +356,7 @@ pub const CASES: &[Case] = &[
             });
             let frames = steps.map(|objects| Trial {
                 moves: true,
-                ..Trial::judged("passing", NARROW, objects)
+                ..Trial::rasterised("passing", NARROW, objects)
             });
             frames.collect()
         }),
@@ -426,7 +426,7 @@ fn sixteen(alpha: f32) -> Trial {
     scene.views.truncate(1);
     Trial {
         scene,
-        ..Trial::judged("", PLANES, Vec::new())
+        ..Trial::rasterised("", PLANES, Vec::new())
     }
 }
 
@@ -454,7 +454,7 @@ fn crossing() -> Trial {
     let v = |x: f32, y: f32| Vec3::new(x, y, -6.0);
     let wall = [[v(-4.0, -5.0), v(5.0, -4.0), v(0.0, 5.0)]];
     objects.push(object("wall", wall, [0.9, 0.8, 0.1], 0.7));
-    Trial::judged("crossing", NARROW, objects)
+    Trial::rasterised("crossing", NARROW, objects)
 }
 
 /// Three bars that overlap in a cycle: no order of the triangles is right.
@@ -472,7 +472,7 @@ fn cycle() -> Trial {
         let color = [[0.9, 0.1, 0.1], [0.1, 0.8, 0.2], [0.1, 0.2, 0.9]][i];
         object(&format!("bar {i}"), bar, color, 0.6)
     };
-    Trial::judged("cycle", NARROW, (0..3).map(bar).collect())
+    Trial::rasterised("cycle", NARROW, (0..3).map(bar).collect())
 }
 
 /// Triangles that break normals and clipping, lit.
@@ -484,7 +484,7 @@ fn grazing() -> Trial {
         ..Material::unlit(color, alpha)
     };
     let v = Vec3::new;
-    // Each an object, so that the judge knows one from the next.
+    // Each an object, so that the reference knows one from the next.
     let slivers = (0..40).map(|i| {
         let x = -1.5 + 0.075 * i as f32;
         let sliver = [
@@ -521,7 +521,7 @@ fn grazing() -> Trial {
     mesh.normals.fill(Vec3::ZERO);
     flat.mesh = mesh.into();
     objects.push(flat);
-    let mut trial = Trial::judged("grazing", NARROW, objects);
+    let mut trial = Trial::rasterised("grazing", NARROW, objects);
     trial.scene.lights.push(Light {
         source: Source::Point(v(1.0, 2.0, 1.0)),
         color: [1.0; 3],

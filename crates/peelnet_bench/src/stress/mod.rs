@@ -1,16 +1,16 @@
-//! Hard cases: every method drawn where transparency is known to break, and what must hold of it there.
+//! Stress cases: every method drawn where transparency is known to break, and what must hold of it there.
 //!
 //! [`CASES`] makes the scenes, [`Property`] says what must hold, with its limit, and each method's declaration what is known not to ([`KnownFailure`]).
 //! [`stress`] draws a case with a list of methods and gives a [`Row`] for each method and property.
 //!
 //! ```text
-//! case ─► trials (scene, and the fragments of its pixels: known, or found by the 64-bit judge)
+//! case ─► trials (scene, and the fragments of its pixels: known, or found by the 64-bit reference)
 //!           ├─► exact frames
 //!           └─► each method's frames: as listed, reversed, shuffled, scaled, moved ─► findings ─► rows
 //! ```
 
 mod catalogue;
-pub mod judge;
+pub mod ground_truth;
 mod network;
 mod properties;
 mod subject;
@@ -57,7 +57,7 @@ enum Work {
 type Examine = fn(&Gpu, &(LearnedWeight, Model), &mut Findings) -> Result<(), ExportError>;
 
 impl Case {
-    pub fn judges(&self, method: &MethodSpec) -> bool {
+    pub fn applies_to(&self, method: &MethodSpec) -> bool {
         match self.work {
             Work::Frames(_) => true,
             Work::Deep(_) => method.guarantees().exact && !method.guarantees().peels,
@@ -77,7 +77,7 @@ impl Stressed {
             1 => "1 property holds".to_owned(),
             n => format!("{n} properties hold"),
         };
-        let declared = counted(count(Outcome::Declared), "declared flaw");
+        let declared = counted(count(Outcome::Declared), "known failure");
         let fail = counted(count(Outcome::Fail), "failure");
         format!("{pass}, {declared}, {fail}")
     }
@@ -89,8 +89,8 @@ const ORDERS: [Submission; 2] = [Submission::Reversed, Submission::Shuffled(7)];
 /// Factors of [`Property::Scale`].
 const SCALES: [f32; 2] = [1e-3, 1e3];
 
-/// Draws a case with every subject and judges what is seen; `notify` gets the name of every subject before it is drawn, and may end the
-/// run. With `strict`, a flaw that is declared for this adapter and does not occur is a failure: meant for shipped networks, not for
+/// Draws a case with every subject and checks what is seen; `notify` gets the name of every subject before it is drawn, and may end the
+/// run. With `strict`, a failure that is known on this adapter and does not occur is a failure: meant for shipped networks, not for
 /// a user's own. Pictures of what fails are saved in the folder `images`, beside the exact ones.
 ///
 /// # Errors
@@ -103,8 +103,8 @@ pub fn stress(
     images: Option<&Path>,
     notify: &mut dyn FnMut(&str) -> Result<(), EvalError>,
 ) -> Result<Vec<Row>, EvalError> {
-    let judged = subjects.iter().filter(|s| case.judges(&s.method));
-    let subjects: Vec<&Subject> = judged.collect();
+    let checked = subjects.iter().filter(|s| case.applies_to(&s.method));
+    let subjects: Vec<&Subject> = checked.collect();
     let mut findings = Findings::default();
     // Of every trial its name, the exact image, and every subject's.
     let mut drawn: Vec<(String, Vec<Image>)> = Vec::new();
@@ -136,7 +136,7 @@ pub fn stress(
             findings.subject = i;
             let image = stand.draw(subject, case, &mut findings)?;
             // Trials that move are a sequence.
-            let moves = trial.moves && subject.promises.per_pixel;
+            let moves = trial.moves && subject.guarantees.per_pixel;
             if let (true, Some((_, before))) = (moves, drawn.last()) {
                 let moved = [&before[1 + i], &image];
                 properties::compare_frames(moved, [&before[0], &stand.exact[0]], &mut findings);
@@ -173,15 +173,15 @@ fn rows(
     let all = findings.all.iter();
     all.map(|(&(i, property), finding)| {
         let method = &subjects[i].method;
-        let flaw = KnownFailure::find(method, case.id, property, adapter);
-        let (result, reason) = match (finding.holds(), flaw) {
+        let failure = KnownFailure::find(method, case.id, property, adapter);
+        let (result, reason) = match (finding.holds(), failure) {
             (true, None) => (Outcome::Pass, None),
-            (true, Some(flaw)) if strict => (
+            (true, Some(failure)) if strict => (
                 Outcome::Fail,
-                Some(format!("holds, but is declared as a flaw: {}", flaw.reason)),
+                Some(format!("holds, but is a known failure: {}", failure.reason)),
             ),
             (true, Some(_)) => (Outcome::Pass, None),
-            (false, Some(flaw)) => (Outcome::Declared, Some(flaw.reason.to_owned())),
+            (false, Some(failure)) => (Outcome::Declared, Some(failure.reason.to_owned())),
             (false, None) => (Outcome::Fail, None),
         };
         Row {
@@ -250,17 +250,17 @@ impl<'a> Stand<'a> {
         let (method, options) = (&subject.method, self.options(subject));
         let mut ready = self.stage.ready(method, options.clone())?;
         let first = self.stage.image(&mut ready, &views[0])?.image;
-        properties::judge(subject, case.id, self.trial, &self.truth, &first, findings);
+        properties::check(subject, case.id, self.trial, &self.truth, &first, findings);
         let mut last = first.clone();
         for (k, camera) in views.iter().enumerate().skip(1) {
             let next = self.stage.image(&mut ready, camera)?.image;
-            if subject.promises.per_pixel {
+            if subject.guarantees.per_pixel {
                 let exact = [&self.exact[k - 1], &self.exact[k]];
                 properties::compare_frames([&last, &next], exact, findings);
             }
             last = next;
         }
-        if subject.promises.order_independent && subject.promises.per_pixel {
+        if subject.guarantees.order_independent && subject.guarantees.per_pixel {
             for order in ORDERS {
                 self.stage.renderer.submit(order);
                 let other = self.stage.image(&mut ready, &views[0])?.image;
@@ -305,7 +305,7 @@ impl<'a> Stand<'a> {
             for (i, sum) in shown[k as usize].iter().zip(sum) {
                 let Some(i) = *i else { continue };
                 let found = f64::from(*sum) / f64::from(kind.fragments[i].alpha);
-                let error = (found - kind.transmittance_at(i, subject.promises.own_share)).abs();
+                let error = (found - kind.transmittance_at(i, subject.guarantees.own_share)).abs();
                 findings.note(Property::Transmittance, error, limit, || {
                     format!("{}, at depth {}", kind.name, kind.fragments[i].depth)
                 });
@@ -318,21 +318,21 @@ impl<'a> Stand<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    /// Every flaw that a method declares names cases that exist, and belongs to at least one of the methods that run.
+    /// Every known failure names cases that exist, and belongs to at least one of the methods that run.
     #[test]
-    fn flaws_are_of_cases_and_methods_that_run() {
+    fn known_failures_are_of_cases_and_methods_that_run() {
         // Those of a full run, and points of curves, which `peelnet stress --methods` draws.
         let mut run = Subject::all_methods();
         run.extend(peelnet_render::MethodSpec::curve());
         for method in peelnet_render::METHODS {
-            for flaw in method.expectations.known_failures {
-                let at = format!("{} of {}", flaw.property, method.name);
-                for case in flaw.cases() {
+            for failure in method.expectations.known_failures {
+                let at = format!("{} of {}", failure.property, method.name);
+                for case in failure.cases() {
                     assert!(CASES.iter().any(|c| c.id == case), "{at}: {case}");
                 }
                 let mut of_method = run.iter().filter(|m| m.name() == method.name);
-                assert!(of_method.any(flaw.when), "{at} is never seen");
-                assert!(flaw.reason.len() > 10, "{at}");
+                assert!(of_method.any(failure.when), "{at} is never seen");
+                assert!(failure.reason.len() > 10, "{at}");
             }
         }
     }

@@ -69,7 +69,7 @@ const SINGLE: f64 = 1e-4;
 /// What coverage may err by where its format allows.
 const COVERAGE: f64 = 1.0 / 1024.0;
 
-/// What the order of drawing may change at most, linear light, whatever the rounding: a change that is larger is a flaw to be declared.
+/// What the order of drawing may change at most, linear light, whatever the rounding: a change that is larger is a failure to be declared.
 const ORDER: f64 = 2.0 * STEP;
 
 /// Errors of transmittance that a public harness for moment-based transparency passes: one surface, two layers, sixteen
@@ -83,7 +83,7 @@ const TRANSMITTANCE: [(&str, f64, f64); 3] = [
 
 /// The limit of [`Property::Transmittance`] in a case; `None` in cases without one.
 pub(super) fn transmittance_limit(case: &str, subject: &Subject) -> Option<f64> {
-    let close = subject.promises.close_estimate;
+    let close = subject.guarantees.close_estimate;
     let found = TRANSMITTANCE.iter().find(|(id, ..)| *id == case);
     let (_, public, least) = found?;
     // It is read from a sum of one term, which rounds as its target does, towards zero on some adapters.
@@ -105,11 +105,11 @@ impl Subject {
     /// four times `n` roundings of what it shows, and an error of `T` moves both parts. What is reconstructed from statistics adds its
     /// own: a share of the absorbance, and `e^−b·share` changes by `b` times as much at most.
     fn order_limits(&self, kind: &Kind, shown: f64) -> [f64; 2] {
-        if self.promises.sorted {
+        if self.guarantees.sorted {
             return [0.0; 2];
         }
         let n = kind.fragments.len() as f64;
-        if !self.promises.normalised {
+        if !self.guarantees.normalised {
             // A difference of sums, which may be larger than itself.
             return [(4.0 * n * self.rounding() * kind.terms()).min(ORDER); 2];
         }
@@ -121,7 +121,7 @@ impl Subject {
     }
 }
 
-pub(super) fn judge(
+pub(super) fn check(
     subject: &Subject,
     case: &str,
     trial: &Trial,
@@ -138,7 +138,7 @@ pub(super) fn judge(
         };
         let is_finite = p.iter().all(|c| c.is_finite());
         findings.forbid(Property::Finite, !is_finite, place);
-        if !subject.promises.per_pixel {
+        if !subject.guarantees.per_pixel {
             continue;
         }
         match *content {
@@ -150,15 +150,15 @@ pub(super) fn judge(
             Content::Kind(k) => {
                 let k = k as usize;
                 let kind = (&truth.kinds[k], supports[k].as_slice());
-                judge_pixel(subject, case, kind, p, &place, findings);
+                check_pixel(subject, case, kind, p, &place, findings);
             }
         }
     }
 }
 
-/// Judges a pixel that holds fragments, each on the scale of what it shows: a bright fragment elsewhere, or one of little opacity,
+/// Checks a pixel that holds fragments, each on the scale of what it shows: a bright fragment elsewhere, or one of little opacity,
 /// widens no limit. `supports` are the extents of its fragments' colours.
-fn judge_pixel(
+fn check_pixel(
     subject: &Subject,
     case: &str,
     (kind, supports): (&Kind, &[[f64; 2]]),
@@ -171,7 +171,7 @@ fn judge_pixel(
     let limit = subject.coverage_limit(kind);
     findings.note(Property::Background, (p64[3] - covered).abs(), limit, place);
     let error = (0..3).fold(0.0, |e: f64, c| nan_max(e, (p64[c] - kind.exact[c]).abs()));
-    if subject.promises.exact {
+    if subject.guarantees.exact {
         let limit = peelnet_core::tolerance::EXACT * kind.scale() + kind.uncertainty;
         findings.note(Property::Exact, error, limit, place);
     }
@@ -180,7 +180,7 @@ fn judge_pixel(
         let limit = (SINGLE + 6.0 * subject.rounding()) * kind.scale() + kind.uncertainty;
         findings.note(Property::Single, error, limit, place);
     }
-    if subject.promises.normalised {
+    if subject.guarantees.normalised {
         // What the fragments show is a mean of their colours times the coverage; C_0 shows through the rest.
         let behind = Vec3::from(kind.background).as_dvec3();
         let own = DVec3::new(p64[0], p64[1], p64[2]) - (1.0 - p64[3]) * behind;
@@ -218,7 +218,7 @@ pub(super) fn compare_orders(
         let shown = colors.fold(0.0f32, |m, c| m.max(c.abs()));
         let [color, coverage] = match content {
             Content::Kind(k) => subject.order_limits(&truth.kinds[k as usize], shown.into()),
-            Content::Unjudged if !subject.promises.sorted => [ORDER; 2],
+            Content::Unjudged if !subject.guarantees.sorted => [ORDER; 2],
             Content::Nothing | Content::Unjudged => [0.0; 2],
         };
         let place = || format!("{}, pixel {i}", truth.name(content));

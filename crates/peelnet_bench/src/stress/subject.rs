@@ -1,4 +1,4 @@
-//! A method under test, and the limits that follow from its promises.
+//! A method under test, and the limits that follow from its guarantees.
 
 use peelnet_model::Model;
 use peelnet_render::{
@@ -12,7 +12,7 @@ pub struct Subject {
     pub method: MethodSpec,
     /// The network's text and itself, for learned methods.
     pub learned: Option<(LearnedWeight, Model)>,
-    pub(super) promises: Guarantees,
+    pub(super) guarantees: Guarantees,
 }
 
 /// Parameters that say how a method keeps what it knows.
@@ -21,7 +21,7 @@ const KEPT: [&str; 2] = ["colors=", "cell="];
 impl Subject {
     pub fn new(method: MethodSpec, learned: Option<(LearnedWeight, Model)>) -> Self {
         Self {
-            promises: method.guarantees(),
+            guarantees: method.guarantees(),
             method,
             learned,
         }
@@ -55,14 +55,14 @@ impl Subject {
 
     /// The rounding of each addition to the sums, relative to the sum.
     pub(super) fn rounding(&self) -> f64 {
-        unit_roundoff(self.promises.sums)
+        unit_roundoff(self.guarantees.sums)
     }
 
     /// What roundings of the statistics of `n` fragments may change, as a share of the colour. Positions are roots of a polynomial
     /// of the statistics: where roots coincide, a change of the statistics moves them by its root of the same degree.
     pub(super) fn reconstruction(&self, n: f64) -> f64 {
-        let degree = self.promises.root.unwrap_or(1);
-        let rounding = n * unit_roundoff(self.promises.statistics);
+        let degree = self.guarantees.root.unwrap_or(1);
+        let rounding = n * unit_roundoff(self.guarantees.statistics);
         4.0 * rounding.powf(1.0 / f64::from(degree))
     }
 }

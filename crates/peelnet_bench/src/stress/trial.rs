@@ -1,6 +1,6 @@
-//! A scene with the fragments of each of its pixels: known beforehand, or found by the 64-bit judge.
+//! A scene with the fragments of each of its pixels: known beforehand, or found by the 64-bit reference.
 
-use super::judge;
+use super::ground_truth;
 use crate::stage::{camera, quad};
 use glam::Vec3;
 use peelnet_core::{
@@ -148,12 +148,12 @@ fn material(layer: &Fragment) -> Material {
     }
 }
 
-/// Width and height of frames whose pixels the judge finds.
+/// Width and height of frames whose pixels the reference finds.
 const JUDGED_SIZE: [u32; 2] = [48, 36];
 
 impl Trial {
-    /// Objects before the background, whose pixels the judge finds when they are drawn.
-    pub fn judged(name: &str, planes: [f32; 2], objects: Vec<Object>) -> Self {
+    /// Objects before the background, whose pixels the reference finds when they are drawn.
+    pub fn rasterised(name: &str, planes: [f32; 2], objects: Vec<Object>) -> Self {
         let (maker, camera) = ("the stress catalogue", camera(planes));
         Self {
             scene: Scene::generated(name, maker, BACKGROUND, camera, objects),
@@ -221,15 +221,15 @@ impl Trial {
         Self {
             size,
             known: Some(truth),
-            ..Self::judged("stacks", planes, objects)
+            ..Self::rasterised("stacks", planes, objects)
         }
     }
 
-    /// What the first view's pixels hold: as the trial was made, or as the 64-bit judge finds.
+    /// What the first view's pixels hold: as the trial was made, or as the 64-bit reference finds.
     pub fn truth(&self) -> Truth {
         match &self.known {
             Some(known) => known.clone(),
-            None => judge::truth(&self.scene, &self.scene.views[0], self.size),
+            None => ground_truth::truth(&self.scene, &self.scene.views[0], self.size),
         }
     }
 

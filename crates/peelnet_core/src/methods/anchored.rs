@@ -194,7 +194,7 @@ pub fn composite_weighted(
 }
 
 /// A pixel's colour from the sums of all its fragments, `Σ α c w` and `Σ α w`, its transmittance and the background. The shader
-/// twin is `peelnet_composite` in `learned/resolve.wgsl`.
+/// shader is `peelnet_composite` in `learned/resolve.wgsl`.
 pub fn resolve(sums: [f64; 4], transmittance: f64, background: [f64; 3]) -> [f64; 3] {
     let fraction = if sums[3] > 0.0 {
         (1.0 - transmittance) / sums[3].max(f64::MIN_POSITIVE)
@@ -204,7 +204,7 @@ pub fn resolve(sums: [f64; 4], transmittance: f64, background: [f64; 3]) -> [f64
     std::array::from_fn(|k| sums[k] * fraction + background[k] * transmittance)
 }
 
-/// The same with the pixel's ends in sums of their own. The shader twin is `peelnet_composite` in
+/// The same with the pixel's ends in sums of their own. The shader is `peelnet_composite` in
 /// `learned/resolve_separate_ends.wgsl`.
 pub fn resolve_separate_extremes(
     between: [f64; 4],

@@ -1,4 +1,4 @@
-//! Every compositing method on a plain list of fragments: the CPU twin of the GPU method of the same name.
+//! Every compositing method on a plain list of fragments: on the CPU.
 //!
 //! The commutative methods take fragments in any order; [`over`] sorts first. `background` is `C_0`, linear RGB.
 

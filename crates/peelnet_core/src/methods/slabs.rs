@@ -6,7 +6,7 @@
 //! bounded by its mean depth (Markov's inequality), and only where between the bounds the truth lies is guessed: see [`Interior`].
 //!
 //! Three geometry passes: the range, the sums and records, the colours. Records are levels of depth and opacity under MAX blending
-//! ([`ExtremeCode`]). The shader twin is `learned/slabs.wgsl`, with the file of a [`Layout`], such as `slabs_small.wgsl`.
+//! ([`ExtremeCode`]). The shader is `learned/slabs.wgsl`, with the file of a [`Layout`], such as `slabs_small.wgsl`.
 
 use super::{Point, anchored::composite_weighted, known::KnownFragment, point, points};
 use crate::{

@@ -1,4 +1,4 @@
-//! What shaders read of the scene, field by field: twins of the structs in `shaders/scene`, compared with naga's offsets by a test.
+//! What shaders read of the scene, field by field: the structs in `shaders/scene`, compared with naga's offsets by a test.
 
 use bytemuck::{Pod, Zeroable};
 use peelnet_scene::{Light, Lighting, Material, SHADER_NUMBERS, Source};
@@ -151,7 +151,7 @@ mod tests {
         found.unwrap_or_else(|| panic!("the shader has no struct {name}"))
     }
 
-    macro_rules! twin {
+    macro_rules! same_layout {
         ($module:expr, $wgsl:literal, $rust:ty, [$($field:ident),*], $more:expr) => {{
             let (members, span) = members($module, $wgsl);
             let mut ours = vec![$((stringify!($field).to_owned(), offset_of!($rust, $field))),*];
@@ -168,8 +168,8 @@ mod tests {
         let shader = crate::shaders::link("methods::blended::gather", &features, &[]);
         let text = shader.expect("links").text.clone();
         let capabilities = naga::valid::Capabilities::empty();
-        let (module, _) = crate::shaders::validate("twins", &text, capabilities).expect("valid");
-        twin!(&module, "Light", LightData, [position, is_point, color], []);
+        let (module, _) = crate::shaders::validate("structs", &text, capabilities).expect("valid");
+        same_layout!(&module, "Light", LightData, [position, is_point, color], []);
         let begin = offset_of!(MaterialData, numbers);
         let placed = NUMBERS.iter().filter_map(|number| {
             let field = number.field.rsplit('.').next()?.trim();
@@ -177,7 +177,7 @@ mod tests {
         });
         let mut numbers: Vec<(String, usize)> = placed.collect();
         numbers.sort_by_key(|(_, offset)| *offset);
-        twin!(
+        same_layout!(
             &module,
             "Material",
             MaterialData,
@@ -190,7 +190,7 @@ mod tests {
             ],
             numbers
         );
-        twin!(
+        same_layout!(
             &module,
             "Camera",
             CameraUniform,

@@ -1,6 +1,6 @@
 //! The declaration of a method: all that is known of it, in one place.
 //!
-//! Lists, help texts, benchmarks, hard cases and tests iterate over [`METHODS`](super::METHODS) and read these fields; none of
+//! Lists, help texts, benchmarks, stress cases and tests iterate over [`METHODS`](super::METHODS) and read these fields; none of
 //! them knows a method by its name.
 
 use super::{

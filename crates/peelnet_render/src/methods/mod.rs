@@ -1,7 +1,7 @@
 //! Every method, in a folder of its own: `mod.rs` has its source, parameters, targets and passes, `reference.rs` the same on the CPU, and
 //! `expectations.rs` what tests ask of it.
 //!
-//! [`METHODS`] lists the declarations; names, help texts, benchmarks, hard cases and tests are made from them. [`MethodSpec`] is a
+//! [`METHODS`] lists the declarations; names, help texts, benchmarks, stress cases and tests are made from them. [`MethodSpec`] is a
 //! method's name with its parameters, parsed. CONTRIBUTING.md adds a method step by step.
 
 mod abuffer;

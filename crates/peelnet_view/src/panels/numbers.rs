@@ -11,10 +11,10 @@ pub(super) fn show(app: &mut App, ui: &mut Ui) {
     ui.checkbox(&mut app.panels.measures, "Measure when the view rests")
         .on_hover_text("Against the exact image, of the whole picture, as peelnet bench does");
     let Some(key) = app.key() else { return };
-    match app.judge.get(&key) {
+    match app.errors.get(&key) {
         Some(Ok(numbers)) => table(ui, "numbers", errors(numbers, app.size)),
         Some(Err(e)) => error(ui, e),
-        None if app.judge.is_busy() => {
+        None if app.errors.is_busy() => {
             ui.horizontal(|ui| {
                 ui.spinner();
                 ui.label("measuring");

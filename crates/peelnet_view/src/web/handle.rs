@@ -133,7 +133,7 @@ impl Page {
     /// Mean squared error of the picture, of 255², once it is measured.
     pub fn error(&self) -> Option<f64> {
         self.read(|app| {
-            let numbers = app.judge.get(&app.key()?)?.as_ref();
+            let numbers = app.errors.get(&app.key()?)?.as_ref();
             numbers.ok().map(|n| n.differences.mse255)
         })?
     }

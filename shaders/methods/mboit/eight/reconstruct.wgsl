@@ -1,4 +1,4 @@
-// Transmittance in front of a warped depth from eight power moments (Muenstermann et al. 2018); the steps are explained in the twin,
+// Transmittance in front of a warped depth from eight power moments (Muenstermann et al. 2018); the steps are explained in the CPU reference,
 // peelnet_core::methods::moments::power.
 import package::methods::mboit::trigonometric::roots::quartic;
 import package::parameters::{BIAS, OVERESTIMATION};

@@ -1,5 +1,5 @@
 // Transmittance in front of a warped depth from four power moments (Muenstermann et al. 2018); the steps are explained
-// in the twin, four_moment_bounds of peelnet_core::methods::moments::power, whose products of pivots would be too small for 32 bits at the paper's bias:
+// in the CPU reference, four_moment_bounds of peelnet_core::methods::moments::power, whose products of pivots would be too small for 32 bits at the paper's bias:
 // here they are divided out.
 import package::parameters::{BIAS, OVERESTIMATION};
 

@@ -1,5 +1,5 @@
 // Transmittance in front of a warped depth from six power moments (Muenstermann et al. 2018); the steps are explained in
-// the twin, peelnet_core::methods::moments::power.
+// the CPU reference, peelnet_core::methods::moments::power.
 import package::parameters::{BIAS, OVERESTIMATION};
 
 // Pivots and multipliers of the Hankel matrix of moments.

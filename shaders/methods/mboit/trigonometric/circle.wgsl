@@ -1,4 +1,4 @@
-// Depths as angles, and complex numbers; twin of peelnet_core::methods::moments::trigonometric.
+// Depths as angles, and complex numbers; as peelnet_core::methods::moments::trigonometric.
 
 // Behind the farthest depth, an angle that no depth has.
 const WRAPPING_ZONE: f32 = 0.31415927;

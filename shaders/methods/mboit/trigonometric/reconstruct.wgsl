@@ -1,5 +1,5 @@
 // Transmittance in front of an angle from trigonometric moments (Muenstermann et al. 2018, supplement); the steps are explained in the
-// twin, peelnet_core::methods::moments::trigonometric.
+// CPU reference, peelnet_core::methods::moments::trigonometric.
 import package::methods::mboit::trigonometric::circle::{WRAPPING_ZONE, conjugate, times, turn};
 import package::methods::mboit::trigonometric::roots::{cubic, quadratic};
 import package::parameters::{BIAS, MOMENTS, OVERESTIMATION};

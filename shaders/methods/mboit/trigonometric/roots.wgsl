@@ -1,4 +1,4 @@
-// Zeros of polynomials all of whose zeros are real, coefficients from the constant one up; twin of peelnet_core::methods::moments::roots.
+// Zeros of polynomials all of whose zeros are real, coefficients from the constant one up; as peelnet_core::methods::moments::roots.
 
 fn quadratic(c: vec3f) -> vec2f {
     let half = 0.5 * c.y;

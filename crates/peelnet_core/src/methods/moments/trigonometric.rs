@@ -19,7 +19,7 @@ pub const MOST: usize = 3;
 /// Behind the farthest depth, an angle that no depth has.
 pub const WRAPPING_ZONE: f64 = 0.1 * PI;
 
-/// For 32-bit moments, by the hard cases: with 5e-6 and with 3e-5, layers of α = 0.99 let behind them shine through by up to 72/255 and
+/// For 32-bit moments, by the stress cases: with 5e-6 and with 3e-5, layers of α = 0.99 let behind them shine through by up to 72/255 and
 /// 49/255, and the order of drawing shows; with 1e-4 by 5/255, with 3e-4 by 6/255, and the order does not show. Sines and cosines are less
 /// exact than sums, so that power moments can do with less.
 pub const BIAS: f64 = 1e-4;

@@ -9,7 +9,7 @@ pub(super) const METHOD: Expectations = Expectations {
         per_pixel: false,
         ..Guarantees::NORMALISED
     },
-    // Of a pixel whose neighbours are like it: `per_pixel` is not promised.
+    // Of a pixel whose neighbours are like it: `per_pixel` is not guaranteed.
     reference: Some(|s, p| {
         let slices = slices(s) as usize;
         let t = reference::transmittances(&points(p.fragments), &p.warp, slices);

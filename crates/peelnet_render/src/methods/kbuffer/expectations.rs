@@ -3,7 +3,7 @@
 use super::{reference, tail};
 use crate::methods::{expected::*, stored_colors};
 
-/// Few enough places that tails of hundreds of fragments are left in the hard cases.
+/// Few enough places that tails of hundreds of fragments are left in the stress cases.
 fn long_tails(spec: &MethodSpec) -> bool {
     spec.number() <= 8 && half_sums(spec)
 }

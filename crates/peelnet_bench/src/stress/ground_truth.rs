@@ -1,4 +1,4 @@
-//! What a scene's pixels hold, found on the CPU in 64 bits: the scan-line judge of [`peelnet_core::scanline`] and the shading of
+//! What a scene's pixels hold, found on the CPU in 64 bits: the scan-line reference of [`peelnet_core::scanline`] and the shading of
 //! [`peelnet_core::shading`]. Nothing of it comes from the renderer that is judged.
 
 use super::trial::{Content, Kind, Truth};
@@ -12,7 +12,7 @@ use peelnet_scene::{Camera, EFFECTS, Effect, Light, Lighting, Material, Object, 
 use std::collections::BTreeMap;
 
 /// How far a vertex may be snapped, in pixels: WebGPU's adapters have a sub-pixel grid of at least 4 bits, and take the nearest of its
-/// points. Pixels that hold other surfaces within this distance are not judged.
+/// points. Pixels that hold other surfaces within this distance are not compared.
 const SNAP: f64 = 1.0 / 32.0;
 
 /// What 32-bit shading may be off from 64-bit shading, relative to 1 or to what is brighter: interpolated normals are off by some
@@ -64,7 +64,7 @@ fn world(object: &Object, triangle: [u32; 3]) -> [DVec3; 3] {
     })
 }
 
-/// What a view's pixels hold. Those on edges are not judged, nor those with materials that need textures.
+/// What a view's pixels hold. Those on edges are not compared, nor those with materials that need textures.
 pub(super) fn truth(scene: &Scene, camera: &Camera, size: [u32; 2]) -> Truth {
     let [width, height] = size.map(|n| n as usize);
     let triangles = clip_triangles(scene, camera, size);
