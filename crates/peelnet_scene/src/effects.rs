@@ -1,5 +1,6 @@
-//! Effects of materials and lights, a row each. Scene features, the linker's features, the viewer, `inspect`, the documents'
-//! table and the tests that unused effects cost nothing go through the rows.
+//! Effects of materials and lights, a row each. Scene features, the linker's features, the viewer,
+//! `inspect`, the documents' table and the tests that unused effects cost nothing go through the
+//! rows.
 
 use crate::{
     material::{Lighting, Material, NUMBERS, Number},
@@ -9,8 +10,8 @@ use bitflags::bitflags;
 use std::fmt;
 
 bitflags! {
-    /// Pipeline specialisation key of a material. Each distinct key of a scene gets its own pipeline in every pass; no
-    /// shader branches on materials.
+    /// Pipeline specialisation key of a material. Each distinct key of a scene gets its own
+    /// pipeline in every pass; no shader branches on materials.
     #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
     pub struct MaterialFlags: u32 {
         /// Lit by either model.
@@ -66,7 +67,8 @@ impl MaterialFlags {
         .union(Self::METALLIC_ROUGHNESS_MAP)
         .union(Self::OCCLUSION_MAP);
 
-    /// Every flag that shaders know with its feature there, in the order in which features are listed.
+    /// Every flag that shaders know with its feature there, in the order in which features are
+    /// listed.
     const FEATURES: &[(Self, &str)] = &[
         (Self::LIT, "lit"),
         (Self::PHONG, "phong"),
@@ -137,8 +139,8 @@ pub struct Effect {
     rule: Rule,
 }
 
-/// What needs an effect, and how a scene is without it. Flags of [`MaterialFlags::OF_LIT`] are needed by lit surfaces
-/// alone.
+/// What needs an effect, and how a scene is without it. Flags of [`MaterialFlags::OF_LIT`] are
+/// needed by lit surfaces alone.
 #[derive(Debug)]
 enum Rule {
     /// A material whose number of this field is not 0.

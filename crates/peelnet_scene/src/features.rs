@@ -1,5 +1,5 @@
-//! Scene features: which effects a scene needs, and which objects need them. A renderer is specialised by them: unused effects
-//! cost nothing.
+//! Scene features: which effects a scene needs, and which objects need them. A renderer is
+//! specialised by them: unused effects cost nothing.
 
 use crate::{
     effects::{EFFECTS, Effect, MaterialFlags},
@@ -26,7 +26,8 @@ pub struct SceneFeature {
 pub struct SceneFeatures {
     /// Every effect there is.
     pub effects: Vec<SceneFeature>,
-    /// The flags of its materials: the most pipelines that a pass over opaque or over transparent surfaces has.
+    /// The flags of its materials: the most pipelines that a pass over opaque or over transparent
+    /// surfaces has.
     pub variants: Vec<MaterialFlags>,
 }
 
@@ -75,8 +76,9 @@ impl SceneFeatures {
     }
 }
 
-/// Effects that no pipeline of a frame depends on: layers matter only where one of them is highlighted, states of a timeline are loaded
-/// one at a time, and the method decides which statistics are gathered.
+/// Effects that no pipeline of a frame depends on: layers matter only where one of them is
+/// highlighted, states of a timeline are loaded one at a time, and the method decides which
+/// statistics are gathered.
 fn beyond_pixels(scene: &Scene) -> [SceneFeature; 3] {
     let several = scene.layers().len() > 1;
     let layered = scene
@@ -125,7 +127,8 @@ impl Scene {
             && self.objects.iter().all(object)
     }
 
-    /// Whether transmitted light is coloured. Where all of it is grey, one channel holds the transmittance.
+    /// Whether transmitted light is coloured. Where all of it is grey, one channel holds the
+    /// transmittance.
     pub fn is_tinted(&self) -> bool {
         let mut materials = self.objects.iter().flat_map(|o| &o.materials);
         materials.any(|m| {

@@ -15,7 +15,8 @@ pub enum Lighting {
     Unlit,
     /// Blinn–Phong (Blinn 1977).
     Phong,
-    /// Cook–Torrance with a GGX distribution (Walter et al. 2007), metallic and roughness as in glTF 2.0.
+    /// Cook–Torrance with a GGX distribution (Walter et al. 2007), metallic and roughness as in
+    /// glTF 2.0.
     Pbr,
 }
 
@@ -40,7 +41,8 @@ pub struct Material {
     pub roughness: f32,
     /// Radiance that it emits beyond what its opacity covers, linear RGB.
     pub emission: [f32; 3],
-    /// Light that passes through what its opacity covers, linear RGB, 0 … 1: stained glass. None where it is black.
+    /// Light that passes through what its opacity covers, linear RGB, 0 … 1: stained glass. None
+    /// where it is black.
     pub transmission: [f32; 3],
     /// Textures.
     pub maps: Maps,
@@ -65,7 +67,8 @@ impl Material {
         }
     }
 
-    /// A transparent surface whose colour is its radiance; drawn as a transparent one even where `alpha` is 1.
+    /// A transparent surface whose colour is its radiance; drawn as a transparent one even where
+    /// `alpha` is 1.
     pub const fn unlit(color: [f32; 3], alpha: f32) -> Self {
         Self {
             name: String::new(),
@@ -117,8 +120,8 @@ impl Material {
     }
 }
 
-/// A number of a material, or the three of a colour. Scene files, timelines, edited scenes, the viewer and shaders go
-/// through [`NUMBERS`].
+/// A number of a material, or the three of a colour. Scene files, timelines, edited scenes, the
+/// viewer and shaders go through [`NUMBERS`].
 #[derive(Debug)]
 pub struct Number {
     /// Its key in scene files.
@@ -127,8 +130,8 @@ pub struct Number {
     pub field: &'static str,
     /// How many floats it has: 1, or 3 of a colour.
     pub length: usize,
-    /// Its first float's place in [`Material::shader_numbers`]; `None` where shaders read it otherwise or not at all. A
-    /// colour begins at a multiple of 4, as WGSL lays it out.
+    /// Its first float's place in [`Material::shader_numbers`]; `None` where shaders read it
+    /// otherwise or not at all. A colour begins at a multiple of 4, as WGSL lays it out.
     pub place: Option<usize>,
     /// How the viewer changes it.
     pub control: Option<Control>,
@@ -212,8 +215,9 @@ impl Floats for [f32; 3] {
     }
 }
 
-/// Declares the keys of a material, all of which may be left out: type, bounds of each number, and of those that are fields
-/// of [`Material`] the field, with [`Number::place`] and [`Number::control`] where they have any.
+/// Declares the keys of a material, all of which may be left out: type, bounds of each number, and
+/// of those that are fields of [`Material`] the field, with [`Number::place`] and
+/// [`Number::control`] where they have any.
 macro_rules! material_keys {
     ($(
         $key:ident: $type:ty $(=> [$low:expr, $high:expr])?
