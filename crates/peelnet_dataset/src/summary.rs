@@ -3,7 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::column::{CHECKS, Column, FragmentBatch, PixelSums};
+use crate::column::{CHECKS, Column, ColumnSlice, FragmentBatch, PixelSums};
 use crate::error::DatasetError;
 use crate::manifest::Manifest;
 use crate::reader::Dataset;
@@ -184,8 +184,10 @@ impl Summary {
                 range.min = range.min.min(value);
                 range.max = range.max.max(value);
             };
-            let values = batch.column(column);
-            (0..batch.len()).for_each(|row| add(values.value(row)));
+            match batch.column(column) {
+                ColumnSlice::F32(v) => v.iter().for_each(|&x| add(x.into())),
+                ColumnSlice::U32(v) => v.iter().for_each(|&x| add(x.into())),
+            }
         }
         for &v in &batch.one_minus_alpha {
             let bin = (1.0 - f64::from(v)) * ALPHA_BINS as f64;
