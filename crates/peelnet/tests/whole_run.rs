@@ -18,6 +18,9 @@ fn a_run_writes_everything_it_promises() {
     for name in files.split(' ') {
         assert!(folder.at("o").join(name).is_file(), "{name}");
     }
+    let curve = String::from_utf8(folder.read("o/loss.csv")).unwrap();
+    assert_eq!(curve.lines().count(), 1 + 2, "headings and epochs: {curve}");
+    assert!(folder.read("o/loss.svg").starts_with(b"<svg"));
     let written: Value = serde_json::from_slice(&folder.read("o/results.json")).unwrap();
     assert_eq!(written, answer, "--json prints what results.json holds");
     for method in ["abuffer", "deep-thesis", "wboit-papakostas", "wboit-eq9"] {
