@@ -1,5 +1,6 @@
-// A triangle that covers the frame.
-fn screen_corner(index: u32) -> vec4f {
+// A triangle that covers the frame: the vertex stage of every pass over pixels.
+@vertex
+fn vertex_main(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
     let corner = vec2f(f32((index << 1u) & 2u), f32(index & 2u));
     return vec4f(corner * 2.0 - 1.0, 0.0, 1.0);
 }

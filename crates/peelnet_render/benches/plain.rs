@@ -48,11 +48,6 @@ const RESOLVE: &str = "
 @group(0) @binding(0) var sums: texture_2d<f32>;
 @group(0) @binding(1) var transmittances: texture_2d<f32>;
 
-@vertex
-fn vertex_main(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
-    return vec4f(f32(index & 1u) * 4.0 - 1.0, f32(index >> 1u) * 4.0 - 1.0, 0.0, 1.0);
-}
-
 @fragment
 fn fragment_main(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let pixel = vec2u(position.xy);

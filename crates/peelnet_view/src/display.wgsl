@@ -20,12 +20,6 @@ const BESIDE: u32 = 3u;
 const ERROR: u32 = 4u;
 const LAYERS: u32 = 5u;
 
-@vertex
-fn vertex_main(@builtin(vertex_index) i: u32) -> @builtin(position) vec4f {
-    // One triangle that covers the picture.
-    return vec4f(f32(i & 1u) * 4.0 - 1.0, f32(i >> 1u) * 4.0 - 1.0, 0.0, 1.0);
-}
-
 // The sRGB curve of 0 … 1; what is not a number is black, as in files.
 fn encoded(linear: f32) -> f32 {
     if !(linear > 0.0) {

@@ -2,7 +2,6 @@
 //
 // Where runs are long, sums are compensated (Kahan 1965): their error does not grow with the number of fragments.
 // Variants: none | tinted | long | tinted long
-import package::helpers::screen::screen_corner;
 import package::peel::runs::{Run, background, camera, carried, carry, fragments, is_in_pieces, last_piece, run_of, slot_at};
 
 @if(tinted) alias Transmittance = vec3f;
@@ -71,11 +70,6 @@ fn carry_on(run: Run, state: State) {
 fn resumed(run: Run) -> State {
     @if(tinted) return State(carried(run, 0u), carried(run, 2u), carried(run, 1u), carried(run, 3u));
     @if(!tinted) return State(carried(run, 0u), carried(run, 2u).x, carried(run, 1u), carried(run, 3u).x);
-}
-
-@vertex
-fn vertex_main(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
-    return screen_corner(index);
 }
 
 @fragment

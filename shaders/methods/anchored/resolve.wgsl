@@ -2,7 +2,6 @@
 // largest half, and where light takes a colour.
 // Variants: none | separate_ends | tinted | separate_ends tinted | full_sums | full_sums separate_ends | full_sums tinted | full_sums separate_ends tinted
 @if(tinted) import package::helpers::resolve::within;
-import package::helpers::screen::screen_corner;
 @if(tinted || full_sums) import package::learned::weight::peelnet_composite;
 @if(!tinted && !full_sums) import package::learned::weight::peelnet_resolve;
 
@@ -12,11 +11,6 @@ import package::helpers::screen::screen_corner;
 @if(separate_ends)
 @group(0) @binding(3) var ends: texture_2d<f32>;
 @if(tinted) @group(0) @binding(4) var tinted: texture_2d<f32>;
-
-@vertex
-fn vertex_main(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
-    return screen_corner(index);
-}
 
 @fragment
 fn fragment_main(@builtin(position) position: vec4f) -> @location(0) vec4f {

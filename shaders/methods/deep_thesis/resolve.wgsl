@@ -1,17 +1,11 @@
 // deep-thesis: the exported text's resolve.
 // Variants: none | full_sums
-import package::helpers::screen::screen_corner;
 @if(full_sums) import package::learned::weight::peelnet_composite;
 @if(!full_sums) import package::learned::weight::peelnet_resolve;
 
 @group(0) @binding(0) var background: texture_2d<f32>;
 @group(0) @binding(1) var sums: texture_2d<f32>;
 @group(0) @binding(2) var transmittances: texture_2d<f32>;
-
-@vertex
-fn vertex_main(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
-    return screen_corner(index);
-}
 
 @fragment
 fn fragment_main(@builtin(position) position: vec4f) -> @location(0) vec4f {

@@ -1,14 +1,8 @@
 // Depth peeling: what is left of C_0 behind all layers.
-import package::helpers::screen::screen_corner;
 
 @group(0) @binding(0) var background: texture_2d<f32>;
 // rgb: colour of all layers, a: transmittance of all layers.
 @group(0) @binding(1) var layers: texture_2d<f32>;
-
-@vertex
-fn vertex_main(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
-    return screen_corner(index);
-}
 
 @fragment
 fn fragment_main(@builtin(position) position: vec4f) -> @location(0) vec4f {

@@ -1,7 +1,6 @@
 // Depth peeling: puts one peeled layer under what is composited so far. Ping-pong between two targets, because
 // 32-bit targets cannot be blended everywhere.
 // Variants: none | counted
-import package::helpers::screen::screen_corner;
 
 // rgb: colour so far, a: transmittance so far.
 @group(0) @binding(0) var before: texture_2d<f32>;
@@ -9,11 +8,6 @@ import package::helpers::screen::screen_corner;
 @group(0) @binding(2) var key: texture_2d<u32>;
 // 0: whether anything was peeled, 1: how much.
 @group(0) @binding(3) var<storage, read_write> found: array<atomic<u32>, 2>;
-
-@vertex
-fn vertex_main(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
-    return screen_corner(index);
-}
 
 @fragment
 fn fragment_main(@builtin(position) position: vec4f) -> @location(0) vec4f {

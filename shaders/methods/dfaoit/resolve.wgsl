@@ -1,5 +1,4 @@
 // dfaoit: the exported text's resolve.
-import package::helpers::screen::screen_corner;
 import package::learned::weight::peelnet_resolve;
 
 @group(0) @binding(0) var background: texture_2d<f32>;
@@ -7,11 +6,6 @@ import package::learned::weight::peelnet_resolve;
 @group(0) @binding(2) var behind: texture_2d<f32>;
 @group(0) @binding(3) var all: texture_2d<f32>;
 @group(0) @binding(4) var count: texture_2d<f32>;
-
-@vertex
-fn vertex_main(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
-    return screen_corner(index);
-}
 
 @fragment
 fn fragment_main(@builtin(position) position: vec4f) -> @location(0) vec4f {

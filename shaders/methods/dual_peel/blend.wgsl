@@ -1,5 +1,4 @@
 // Dual depth peeling: blends the two layers of one pass, the front one under, the back one over.
-import package::helpers::screen::screen_corner;
 
 // What was left before the pass, and what is left after it.
 @group(0) @binding(0) var before: texture_2d<f32>;
@@ -13,11 +12,6 @@ struct Layers {
     // Target 0 blends dst.a * src + dst, target 1 src + (1 - src.a) * dst; alpha becomes dst.a * (1 - src.a) in both.
     @location(0) front: vec4f,
     @location(1) back: vec4f,
-}
-
-@vertex
-fn vertex_main(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
-    return screen_corner(index);
 }
 
 @fragment

@@ -1,15 +1,9 @@
 // Dual depth peeling: fronts over backs over C_0.
-import package::helpers::screen::screen_corner;
 
 @group(0) @binding(0) var background: texture_2d<f32>;
 // rgb: colour, a: transmittance, of the layers peeled from the front and from the back.
 @group(0) @binding(1) var fronts: texture_2d<f32>;
 @group(0) @binding(2) var backs: texture_2d<f32>;
-
-@vertex
-fn vertex_main(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
-    return screen_corner(index);
-}
 
 @fragment
 fn fragment_main(@builtin(position) position: vec4f) -> @location(0) vec4f {

@@ -1,7 +1,6 @@
 // kbuffer and hybrid: the K nearest exactly, in front of the blended tail, in front of C_0.
 // Variants: none | half_colors | byte_colors
 import package::helpers::resolve::normalised;
-import package::helpers::screen::screen_corner;
 import package::helpers::stored::{Stored, restored};
 import package::parameters::K;
 
@@ -11,11 +10,6 @@ import package::parameters::K;
 @group(0) @binding(3) var<storage, read> nearest: array<u32>;
 @group(0) @binding(4) var<storage, read> triangles: array<u32>;
 @group(0) @binding(5) var<storage, read> colors: array<Stored>;
-
-@vertex
-fn vertex_main(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
-    return screen_corner(index);
-}
 
 @fragment
 fn fragment_main(@builtin(position) position: vec4f) -> @location(0) vec4f {

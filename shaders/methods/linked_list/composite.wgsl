@@ -1,6 +1,5 @@
 // linked-list: sorts each pixel's list by (linear depth, triangle) and composites it front to back over C_0.
 // Variants: none | tinted | half_colors | byte_colors | tinted half_colors
-import package::helpers::screen::screen_corner;
 import package::helpers::stored::{Stored, restored};
 import package::scene::camera::Camera;
 
@@ -93,11 +92,6 @@ fn is_behind(node: u32, following: u32) -> bool {
     let depth = depths[node - 1u];
     let next_depth = depths[following - 1u];
     return depth > next_depth || (depth == next_depth && triangles[node - 1u] >= triangles[following - 1u]);
-}
-
-@vertex
-fn vertex_main(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
-    return screen_corner(index);
 }
 
 @fragment

@@ -1,7 +1,6 @@
 // Slabs: the exported text's resolve; its composite alone where light takes a colour. The transmittance of the whole pixel is exp(-total absorbance).
 // Variants: none | three | tinted | three tinted
 @if(tinted) import package::helpers::resolve::within;
-import package::helpers::screen::screen_corner;
 @if(tinted) import package::learned::weight::peelnet_composite;
 @if(!tinted) import package::learned::weight::peelnet_resolve;
 
@@ -9,11 +8,6 @@ import package::helpers::screen::screen_corner;
 @group(0) @binding(1) var sums: texture_2d<f32>;
 @group(0) @binding(2) var absorbances: texture_2d<f32>;
 @if(tinted) @group(0) @binding(3) var tinted: texture_2d<f32>;
-
-@vertex
-fn vertex_main(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
-    return screen_corner(index);
-}
 
 @fragment
 fn fragment_main(@builtin(position) position: vec4f) -> @location(0) vec4f {

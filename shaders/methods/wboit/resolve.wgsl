@@ -2,16 +2,10 @@
 // Variants: none | packed | tinted
 @if(!tinted) import package::helpers::resolve::normalised;
 @if(tinted) import package::helpers::resolve::normalised_by_channel;
-import package::helpers::screen::screen_corner;
 
 @group(0) @binding(0) var background: texture_2d<f32>;
 @group(0) @binding(1) var sums: texture_2d<f32>;
 @if(!packed) @group(0) @binding(2) var transmittances: texture_2d<f32>;
-
-@vertex
-fn vertex_main(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
-    return screen_corner(index);
-}
 
 @fragment
 fn fragment_main(@builtin(position) position: vec4f) -> @location(0) vec4f {

@@ -1,15 +1,9 @@
 // weighted-average: the average colour with coverage 1 - (1 - mean alpha)^n.
 import package::helpers::resolve::normalised;
-import package::helpers::screen::screen_corner;
 
 @group(0) @binding(0) var background: texture_2d<f32>;
 @group(0) @binding(1) var sums: texture_2d<f32>;
 @group(0) @binding(2) var counts: texture_2d<f32>;
-
-@vertex
-fn vertex_main(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
-    return screen_corner(index);
-}
 
 @fragment
 fn fragment_main(@builtin(position) position: vec4f) -> @location(0) vec4f {

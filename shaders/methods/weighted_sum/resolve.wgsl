@@ -1,14 +1,8 @@
 // weighted-sum: sum C + C_0 (1 - sum alpha). Leaves the gamut where alphas add up to more than 1, as does the coverage:
 // reported, not hidden.
-import package::helpers::screen::screen_corner;
 
 @group(0) @binding(0) var background: texture_2d<f32>;
 @group(0) @binding(1) var sums: texture_2d<f32>;
-
-@vertex
-fn vertex_main(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
-    return screen_corner(index);
-}
 
 @fragment
 fn fragment_main(@builtin(position) position: vec4f) -> @location(0) vec4f {

@@ -2,7 +2,6 @@
 // HIGHLIGHT_SHARE of the pixel, all in front of it the rest in equal parts, and what lies behind is not seen. `printed` is that
 // renderer's formula as it stands in print: all others are seen, and the rest is divided by the number of all fragments.
 // Variants: none | increasing | printed | increasing printed | long | long increasing | long printed | long increasing printed
-import package::helpers::screen::screen_corner;
 import package::parameters::{HIGHLIGHT, HIGHLIGHT_SHARE};
 import package::peel::runs::{Run, background, carried, carry, fragments, is_in_pieces, last_piece, run_of, slot_at};
 
@@ -59,11 +58,6 @@ fn carry_on(run: Run, state: State) {
 fn resumed(run: Run) -> State {
     let rest = carried(run, 2u);
     return State(carried(run, 0u), rest.x, carried(run, 1u), rest.y > 0.0, rest.z);
-}
-
-@vertex
-fn vertex_main(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
-    return screen_corner(index);
 }
 
 @fragment

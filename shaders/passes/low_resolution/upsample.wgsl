@@ -2,7 +2,6 @@
 // coverage, never sums. Where there are opaque surfaces, a sample counts by how near its opaque depth is to the pixel's
 // (joint bilateral upsampling, Kopf et al. 2007).
 @if(opaque) import package::scene::camera::Camera;
-import package::helpers::screen::screen_corner;
 
 // The full resolution in pixels.
 struct Extent {
@@ -22,11 +21,6 @@ const EPSILON: f32 = 0.02;
 
 // What a sample keeps whatever its distance, so that one on the right surface counts at all.
 const FLOOR: f32 = 0.0009765625;
-
-@vertex
-fn vertex_main(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
-    return screen_corner(index);
-}
 
 @fragment
 fn fragment_main(@builtin(position) position: vec4f) -> @location(0) vec4f {

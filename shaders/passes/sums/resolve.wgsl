@@ -1,15 +1,9 @@
 // The sums that a method of weighted blending makes of a pixel, as they are: to look at its weights.
 // Variants: none | separate_ends
-import package::helpers::screen::screen_corner;
 
 // Binding 0 is C_0.
 @group(0) @binding(1) var sums: texture_2d<f32>;
 @if(separate_ends) @group(0) @binding(2) var ends: texture_2d<f32>;
-
-@vertex
-fn vertex_main(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
-    return screen_corner(index);
-}
 
 @fragment
 fn fragment_main(@builtin(position) position: vec4f) -> @location(0) vec4f {

@@ -1,7 +1,6 @@
 // Two hashes of the names of a pixel's surfaces in sorted order, and the number of its fragments.
 // Variants: none | long
 import package::helpers::hash::pcg;
-import package::helpers::screen::screen_corner;
 import package::peel::runs::{Run, carried, carry, fragments, is_in_pieces, last_piece, run_of, slot_at};
 
 // Bits that a hash loses: 22 are left, so that four of them add up exactly in 32-bit floats.
@@ -34,11 +33,6 @@ fn carry_on(run: Run, state: State) {
 fn resumed(run: Run) -> State {
     let words = vec2u(carried(run, 0u).xy) | (vec2u(carried(run, 1u).xy) << vec2u(16u));
     return State(words.x, words.y);
-}
-
-@vertex
-fn vertex_main(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
-    return screen_corner(index);
 }
 
 @fragment

@@ -16,7 +16,7 @@ pub struct FullscreenPass {
 }
 
 impl FullscreenPass {
-    /// Builds the pass, onto targets of so many samples a pixel; `extra` are modules that are not in `shaders/`, `entries` what the names of
+    /// Builds the pass, onto targets of so many samples a pixel. The shader has the fragment stage alone; `extra` are modules that are not in `shaders/`, `entries` what the names of
     /// group 0 stand for.
     pub fn new(
         gpu: &Gpu,
@@ -28,11 +28,12 @@ impl FullscreenPass {
         samples: u32,
     ) -> Result<Self, RenderError> {
         let linked = crate::shaders::link(shader, features, extra)?;
+        let triangle = crate::shaders::link("helpers::screen", &[], &[])?;
         let entries = numbered(&linked, 0, entries)?;
         let group = gpu.bind(shader, wgpu::ShaderStages::FRAGMENT, &entries);
         let pipeline = gpu.render_pipeline(&RenderPipeline {
             label: shader,
-            vertex: &linked,
+            vertex: &triangle,
             fragment: &linked,
             groups: &[Some(&group)],
             buffers: &[],
