@@ -401,14 +401,13 @@ impl<'a> Passes<'a> {
         let (gpu, output) = (&b.scene.gpu, b.frame.output);
         let (shader, features) = (pass.shader.as_str(), self.features(pass));
         let modules = self.modules(pass);
-        let [width, height] = b.frame.size;
-        let size = gpu.upload(
-            "frame size",
-            &[width, height, 0, 0],
-            wgpu::BufferUsages::UNIFORM,
-        );
+        let size = matches!(pass.draws, Draws::Threads(_)).then(|| {
+            let [width, height] = b.frame.size;
+            let usage = wgpu::BufferUsages::UNIFORM;
+            gpu.upload("frame size", &[width, height, 0, 0], usage)
+        });
         let mut entries: Vec<(&str, Bind<'_>)> = match pass.draws {
-            Draws::Threads(_) => vec![("frame", Bind::Uniform(&size))],
+            Draws::Threads(_) => size.iter().map(|s| ("frame", Bind::Uniform(s))).collect(),
             Draws::Pixels => vec![("background", Bind::Texture(&b.frame.background))],
             Draws::Surfaces | Draws::Boxes => Vec::new(),
         };
