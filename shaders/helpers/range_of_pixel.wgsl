@@ -1,4 +1,4 @@
-// Where in a range of warped depths a fragment lies, 0 .. 1; as peelnet_render::methods::range.
+// Where in a range of warped depths a fragment lies, 0 .. 1; as peelnet_render::methods::bins::range.
 import package::helpers::absorbance::warped_depth;
 
 // `bounds` holds what methods::bins::bounds keeps of the pixel. A range that is hardly one is one depth.

@@ -253,7 +253,7 @@ proptest! {
                 prop_assert!(shares.all(|x| (-1e-6..=1.0 + 1e-6).contains(x)), "{:?}", f);
                 prop_assert!(is_weight(&|share| f.weight(|_| share)), "{:?}", f);
             }
-            // Interior the known ends of slabs, whose bounds hold the share.
+            // Between the known ends of slabs, whose bounds hold the share.
             for design in [Design::SMALL, Design::MEDIUM, Design::LARGE] {
                 for f in slabs::known_fragments(&points, &warp, design, precision) {
                     let inputs = f.unknown.map(|between| values(&NINE, &between));

@@ -1,9 +1,8 @@
 //! The mathematics of transparency, without GPU, scenes or training; and, below all other crates, the rules of files ([`files`]).
 //!
 //! A pixel is a list of [`fragment::Fragment`]s. [`methods`] turns such a list into a colour: exactly
-//! ([`methods::over`]) or approximately, one file per method, and every learned GPU method has its CPU reference here. [`weights`]
-//! holds the published weight functions, [`mlp`] the network's forward pass, [`scanline`] a 64-bit rasteriser that
-//! judges what the GPU peels, and [`tolerance`] the error bounds that tests may use, each with its reason.
+//! ([`methods::over`]) or by what learned methods are made of, one file each. [`weights`] holds the published weight functions, [`mlp`] the
+//! network's forward pass, [`scanline`] a 64-bit rasteriser that checks what the GPU peels, and [`tolerance`] the error bounds that tests may use, each with its reason.
 //!
 //! Notation (per pixel, nearest fragment first): depth `z_i`, opacity `α_i`, radiance `c_i`, premultiplied
 //! `C_i = α_i c_i`, background `C_0`, transmittance in front of a fragment `T_i = ∏_{j<i}(1 − α_j)`, and of the

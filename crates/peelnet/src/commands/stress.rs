@@ -43,7 +43,7 @@ pub(super) fn run(context: &Context<'_>, args: &StressArgs) -> Result<(), Failur
     let bar = Bar::new(context.console, "stress", steps);
     let mut rows = Vec::new();
     let images = args.out.as_ref().map(|out| out.join("images"));
-    // a known failure must fail with the shipped networks only.
+    // A known failure must fail with the shipped networks only.
     let strict = args.models.is_empty();
     for (case, k) in cases.iter().zip(0..) {
         let mut drawn = 0;

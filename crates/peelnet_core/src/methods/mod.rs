@@ -1,4 +1,5 @@
-//! Every compositing method on a plain list of fragments: on the CPU.
+//! Compositing on a plain list of fragments, on the CPU: exactly, by the weighted mean that trained weights fill in, and by the methods whose
+//! statistics networks read. The references of all other methods stand beside them in `peelnet_render`.
 //!
 //! The commutative methods take fragments in any order; [`over`] sorts first. `background` is `C_0`, linear RGB.
 

@@ -1,6 +1,6 @@
 //! `mboit4`, `mboit6`, `mboit8` and `mboit-trig-M`: moment-based order-independent transparency (Münstermann, Krumpen, Klein & Peters,
 //! "Moment-Based Order-Independent Transparency", PACMCGIT 1(1), 2018) with four, six and eight power moments, and with M = 2 or 3
-//! trigonometric ones (its supplement). the shaders are `methods/mboit4/` and its neighbours.
+//! trigonometric ones (its supplement). The shaders are in `methods/mboit/`.
 //!
 //! Pass 1 sums absorbance `b_i` and its moments over warped depth ζ: `b_k = Σ b_i ζ_i^k`, or `c_k = Σ b_i e^{ikθ_i}` of depths as angles. The
 //! moments do not determine where the absorbance lies, but they bound how much of it can lie in front of a depth; the bound's

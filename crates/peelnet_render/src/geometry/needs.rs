@@ -84,7 +84,7 @@ pub fn compare_needs(work: impl FnOnce()) -> Result<(Vec<String>, usize), Shader
     let built = BUILT.take().unwrap_or_default();
     let mut faults = BTreeSet::new();
     for (shader, features, extra, needs) in &built {
-        // A material that has all that is told apart by what is read of it.
+        // With everything that a material can have: what is read then shows what the pass needs.
         let all = ["numbered", "material", "lit", "pbr", "vertex_colors"];
         let features: Vec<_> = features.iter().map(String::as_str).chain(all).collect();
         let extra: Vec<_> = extra
