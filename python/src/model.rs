@@ -16,8 +16,8 @@ use peelnet::{
     export::{Language, Options},
     named,
 };
-use peelnet_core::mlp::{Layer, Mlp};
 use peelnet_core::files::Outputs;
+use peelnet_core::mlp::{Layer, Mlp};
 use pyo3::{
     prelude::*,
     types::{PyBytes, PyDict, PyType},

@@ -111,7 +111,10 @@ impl<'py> Bar<'py> {
         };
         bar.setattr("total", total)?;
         if !text.is_empty() && bar.hasattr("set_postfix_str")? {
-            bar.call_method1("set_postfix_str", (peelnet_core::files::one_line(text), false))?;
+            bar.call_method1(
+                "set_postfix_str",
+                (peelnet_core::files::one_line(text), false),
+            )?;
         }
         bar.call_method1("update", (done.saturating_sub(self.done),))?;
         self.done = done;
