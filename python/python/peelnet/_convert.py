@@ -17,10 +17,12 @@ def text(results):
     """What `frame` returned, or records, as JSON."""
     if hasattr(results, "to_json"):
         # Its NaN becomes null again.
-        results = json.loads(results.to_json(orient="records", double_precision=15), parse_float=_number)
-    elif isinstance(results, dict):
-        results = [dict(zip(results, row)) for row in zip(*results.values())]
-    return json.dumps(results)
+        text = results.to_json(orient="records", double_precision=15)
+    else:
+        if isinstance(results, dict):
+            results = [dict(zip(results, row)) for row in zip(*results.values())]
+        text = json.dumps(results)
+    return json.dumps(json.loads(text, parse_float=_number))
 
 
 def _number(text):
