@@ -4,12 +4,11 @@
 //! file cannot hold, and numbers of text that its grammar refuses, such as `.5` and `1.`, are written in another way.
 
 use super::{
-    Imported,
     ply_elements::{Face, INDICES, RED, Skipped, U, Vertex},
     polygons::{Triangulator, strip},
-    surface::{self, Fault, fault_of, in_file},
+    surface::{Fault, fault_of, in_file},
 };
-use crate::{budget::Budget, error::SceneError, files::Files, mesh::Mesh};
+use crate::{budget::Budget, files::Files, mesh::Mesh};
 use glam::{DVec3, Vec2, Vec3};
 use peelnet_core::files::{counted, printable};
 use ply_rs_bw::{
@@ -24,11 +23,7 @@ const MAX_HEADER: usize = 1 << 20;
 /// triangle strips.
 ///
 /// Colours in bytes are sRGB, as programs show them, colours in floating-point numbers linear. Missing normals are computed.
-pub(super) fn load(path: &Path, files: &mut Files<'_>) -> Result<Imported, SceneError> {
-    surface::load(path, files, read)
-}
-
-fn read(path: &Path, bytes: &[u8], files: &mut Files<'_>) -> Result<Mesh, Fault> {
+pub(super) fn read(path: &Path, bytes: &[u8], files: &mut Files<'_>) -> Result<Mesh, Fault> {
     let head = head_length(bytes)?;
     let is_text = String::from_utf8_lossy(&bytes[..head]).contains("format ascii");
     let bytes = if is_text {
