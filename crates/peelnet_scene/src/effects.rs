@@ -7,7 +7,7 @@ use crate::{
     scene::{Light, Object, Scene, Source},
 };
 use bitflags::bitflags;
-use std::fmt;
+use std::{fmt, sync::LazyLock};
 
 bitflags! {
     /// Pipeline specialisation key of a material. Each distinct key of a scene gets its own
@@ -67,32 +67,12 @@ impl MaterialFlags {
         .union(Self::METALLIC_ROUGHNESS_MAP)
         .union(Self::OCCLUSION_MAP);
 
-    /// Every flag that shaders know with its feature there, in the order in which features are
-    /// listed.
-    const FEATURES: &[(Self, &str)] = &[
-        (Self::LIT, "lit"),
-        (Self::PHONG, "phong"),
-        (Self::PBR, "pbr"),
-        (Self::EMISSION, "emission"),
-        (Self::CUTOUT, "cutout"),
-        (Self::MAPPED, "mapped"),
-        (Self::COLOR_MAP, "color_map"),
-        (Self::NORMAL_MAP, "normal_map"),
-        (Self::METALLIC_ROUGHNESS_MAP, "metallic_roughness_map"),
-        (Self::OCCLUSION_MAP, "occlusion_map"),
-        (Self::EMISSIVE_MAP, "emissive_map"),
-        (Self::CLEAR_MAP, "clear_map"),
-        (Self::VERTEX_COLORS, "vertex_colors"),
-        (Self::SUN, "sun"),
-        (Self::TRANSMISSION, "transmission"),
-    ];
-
     /// The flags of a material on an object, in the light of a scene ([`Scene::light_flags`]).
     pub fn new(material: &Material, object: &Object, lights: Self) -> Self {
         let rows = EFFECTS.iter();
         let needed = rows.filter(|effect| effect.is_needed_by(material, object, lights));
         let flags: Self = needed.map(|effect| effect.flag).collect();
-        let is_clear = material.maps.color.as_ref().is_some_and(|m| m.has_alpha());
+        let is_clear = material.maps.color.as_ref().is_some_and(|m| m.has_alpha);
         let clear = is_clear.then_some(Self::CLEAR_MAP);
         (flags | clear.unwrap_or_default()).with_implied()
     }
@@ -116,12 +96,17 @@ impl MaterialFlags {
         self.intersects(Self::OF_LIT)
     }
 
-    /// The shader features that it links.
+    /// The shader features that it links: its flags' names in lower case, but for culling, of which
+    /// shaders know nothing.
     pub fn features(self) -> Vec<&'static str> {
-        let on = Self::FEATURES
-            .iter()
-            .filter(|(flag, _)| self.contains(*flag));
-        on.map(|(_, feature)| *feature).collect()
+        static NAMES: LazyLock<Vec<(MaterialFlags, String)>> = LazyLock::new(|| {
+            let flags = (MaterialFlags::all() - MaterialFlags::CULLED).iter_names();
+            flags
+                .map(|(name, flag)| (flag, name.to_lowercase()))
+                .collect()
+        });
+        let on = NAMES.iter().filter(|(flag, _)| self.contains(*flag));
+        on.map(|(_, name)| name.as_str()).collect()
     }
 }
 
@@ -201,8 +186,6 @@ impl PartialEq for Effect {
     }
 }
 
-impl Eq for Effect {}
-
 impl fmt::Display for Effect {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.pad(self.name)
@@ -212,16 +195,18 @@ impl fmt::Display for Effect {
 impl Scene {
     /// The scene without an effect: opaque objects are removed, lit surfaces unlit, and so on.
     pub fn without(&self, effect: &Effect) -> Self {
-        let mut scene = self.clone();
         match effect.rule {
-            Rule::Surface(_, remove) | Rule::Scene(_, remove) => remove(&mut scene),
-            Rule::Material(_, remove) => scene.change_materials(remove),
-            Rule::Number(_) => scene.change_materials(|material| {
+            Rule::Surface(_, remove) | Rule::Scene(_, remove) => {
+                let mut scene = self.clone();
+                remove(&mut scene);
+                scene
+            }
+            Rule::Material(_, remove) => self.with_materials(remove),
+            Rule::Number(_) => self.with_materials(|material| {
                 let values = effect.number().map(|number| (number.values_mut)(material));
                 values.into_iter().for_each(|values| values.fill(0.0));
             }),
         }
-        scene
     }
 
     /// Which of [`MaterialFlags::LIT`] and [`MaterialFlags::SUN`] its lights make possible.
@@ -333,7 +318,7 @@ pub static EFFECTS: &[Effect] = &[
         needed_by: "`emissive_map`, where the material emits",
         adds: TEXTURE,
         rule: Rule::Material(
-            |m| m.is_emissive() && m.maps.emissive.is_some(),
+            |m| m.emission != [0.0; 3] && m.maps.emissive.is_some(),
             |m| m.maps.emissive = None,
         ),
     },

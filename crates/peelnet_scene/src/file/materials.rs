@@ -1,6 +1,6 @@
 //! Materials: a mesh's own, with the values and textures that the scene file sets.
 
-use super::{loader::Loader, reference::MapRef};
+use super::{loader::Loader, raw::MapRef};
 use crate::{
     error::{Fault, SceneError, check_color},
     material::{AlphaMode, Lighting, Material, RawMaterial},
@@ -83,7 +83,7 @@ impl RawMaterial {
             None => {
                 // A colour map with transparent texels makes the surface transparent.
                 let own = self.color_map.as_ref().and(maps.color.as_ref());
-                let is_clear = own.is_some_and(|map| map.has_alpha());
+                let is_clear = own.is_some_and(|map| map.has_alpha);
                 let blend = self.blend.unwrap_or(base.blend || is_clear);
                 (base.alpha_cutoff, blend)
             }

@@ -122,7 +122,7 @@ pub(super) fn scatter(
             alpha: placed.alpha.unwrap_or(p.material.alpha),
             lighting: scatter.lighting.unwrap_or(p.material.lighting),
             // An opacity of 1 drawn from a range blends like the others.
-            blend: placed.alpha.is_some() || map.as_ref().is_some_and(|map| map.has_alpha()),
+            blend: placed.alpha.is_some() || map.as_ref().is_some_and(|map| map.has_alpha),
             maps: Maps {
                 color: map.clone().or_else(|| p.material.maps.color.clone()),
                 ..p.material.maps.clone()

@@ -1,26 +1,23 @@
 //! glTF files as exporters write them, and as they should not.
 
 use crate::{area, assert_framed, assert_refused, image, load_files};
+use ::gltf::binary::{Glb, Header};
 use glam::{Vec2, Vec3};
 use peelnet_scene::{Lighting, Scene, Source, Wrap};
 use serde_json::{Value, json};
 
 fn glb(json: &Value, buffer: &[u8]) -> Vec<u8> {
-    let mut text = serde_json::to_vec(json).unwrap();
-    text.resize(text.len().next_multiple_of(4), b' ');
-    let mut binary = buffer.to_vec();
-    binary.resize(binary.len().next_multiple_of(4), 0);
-    let word = |n: usize| (n as u32).to_le_bytes();
-    let mut file = b"glTF".to_vec();
-    file.extend(word(2));
-    file.extend(word(12 + 8 + text.len() + 8 + binary.len()));
-    file.extend(word(text.len()));
-    file.extend(b"JSON");
-    file.extend(text);
-    file.extend(word(binary.len()));
-    file.extend(b"BIN\0");
-    file.extend(binary);
-    file
+    // Its length is written as it is.
+    let header = Header {
+        magic: *b"glTF",
+        version: 2,
+        length: 0,
+    };
+    let (json, bin) = (
+        serde_json::to_vec(json).unwrap().into(),
+        Some(buffer.into()),
+    );
+    Glb { header, json, bin }.to_vec().unwrap()
 }
 
 /// Four vertices of a square in the plane z = 0, and the indices of two triangles.
@@ -192,9 +189,9 @@ fn images_vertex_colours_and_transmission() {
     assert_eq!((color.size, color.texels[0]), ([2, 1], [255, 0, 0, 128]));
     assert_eq!(glass.maps.wrap, [Wrap::Clamp, Wrap::Mirror]);
     assert!(glass.maps.nearest && glass.maps.normal_scale == 0.5);
-    assert!(glass.maps.normal.is_some() && leaf.maps.color.as_ref().unwrap().has_alpha());
+    assert!(glass.maps.normal.is_some() && leaf.maps.color.as_ref().unwrap().has_alpha);
     // Opaque by its alpha mode, whatever its image holds.
-    assert!(!sign.maps.color.as_ref().unwrap().has_alpha());
+    assert!(!sign.maps.color.as_ref().unwrap().has_alpha);
     // Three quarters pass, one quarter is scattered.
     assert_eq!((lamp.transmission, lamp.color), ([0.75; 3], [0.25; 3]));
     let mesh = &scene.objects[0].mesh;
