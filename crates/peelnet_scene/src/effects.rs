@@ -71,10 +71,10 @@ impl MaterialFlags {
     pub fn new(material: &Material, object: &Object, lights: Self) -> Self {
         let rows = EFFECTS.iter();
         let needed = rows.filter(|effect| effect.is_needed_by(material, object, lights));
-        let flags: Self = needed.map(|effect| effect.flag).collect();
+        let mut flags: Self = needed.map(|effect| effect.flag).collect();
         let is_clear = material.maps.color.as_ref().is_some_and(|m| m.has_alpha);
-        let clear = is_clear.then_some(Self::CLEAR_MAP);
-        (flags | clear.unwrap_or_default()).with_implied()
+        flags.set(Self::CLEAR_MAP, is_clear);
+        flags.with_implied()
     }
 
     /// With [`Self::LIT`] where it is lit by a model, and [`Self::MAPPED`] where it reads textures.
@@ -130,6 +130,8 @@ pub struct Effect {
 enum Rule {
     /// A material whose number of this field is not 0.
     Number(&'static str),
+    /// A material that is lit so.
+    Lighting(Lighting),
     Material(fn(&Material) -> bool, fn(&mut Material)),
     /// A material on an object in the light of a scene.
     Surface(
@@ -166,6 +168,7 @@ impl Effect {
         }
         match self.rule {
             Rule::Number(_) => self.number().is_some_and(|n| !n.is_zero(material)),
+            Rule::Lighting(model) => material.lighting == model,
             Rule::Material(is_needed, _) => is_needed(material),
             Rule::Surface(is_needed, _) => is_needed(material, object, lights),
             Rule::Scene(..) => false,
@@ -202,6 +205,11 @@ impl Scene {
                 scene
             }
             Rule::Material(_, remove) => self.with_materials(remove),
+            Rule::Lighting(model) => self.with_materials(|material| {
+                if material.lighting == model {
+                    material.lighting = Lighting::Unlit;
+                }
+            }),
             Rule::Number(_) => self.with_materials(|material| {
                 let values = effect.number().map(|number| (number.values_mut)(material));
                 values.into_iter().for_each(|values| values.fill(0.0));
@@ -212,11 +220,10 @@ impl Scene {
     /// Which of [`MaterialFlags::LIT`] and [`MaterialFlags::SUN`] its lights make possible.
     pub fn light_flags(&self) -> MaterialFlags {
         let is_sun = |l: &Light| matches!(l.source, Source::Toward(_));
-        match &self.lights[..] {
-            [] => MaterialFlags::empty(),
-            lights if lights.iter().any(is_sun) => MaterialFlags::LIT | MaterialFlags::SUN,
-            _ => MaterialFlags::LIT,
-        }
+        let mut flags = MaterialFlags::empty();
+        flags.set(MaterialFlags::LIT, !self.lights.is_empty());
+        flags.set(MaterialFlags::SUN, self.lights.iter().any(is_sun));
+        flags
     }
 }
 
@@ -249,20 +256,14 @@ pub static EFFECTS: &[Effect] = &[
         flag: MaterialFlags::PHONG,
         needed_by: "`lighting = \"phong\"`, and a light",
         adds: "normals and positions, a binding of lights, Blinn–Phong in the shader",
-        rule: Rule::Material(
-            |m| m.lighting == Lighting::Phong,
-            |m| unlight(m, Lighting::Phong),
-        ),
+        rule: Rule::Lighting(Lighting::Phong),
     },
     Effect {
         name: "pbr",
         flag: MaterialFlags::PBR,
         needed_by: "`lighting = \"pbr\"` with `metallic` and `roughness`, and a light",
         adds: "normals and positions, a binding of lights, Cook–Torrance in the shader",
-        rule: Rule::Material(
-            |m| m.lighting == Lighting::Pbr,
-            |m| unlight(m, Lighting::Pbr),
-        ),
+        rule: Rule::Lighting(Lighting::Pbr),
     },
     Effect {
         name: "cutout",
@@ -388,12 +389,6 @@ pub static EFFECTS: &[Effect] = &[
         ),
     },
 ];
-
-fn unlight(material: &mut Material, lighting: Lighting) {
-    if material.lighting == lighting {
-        material.lighting = Lighting::Unlit;
-    }
-}
 
 #[cfg(test)]
 mod tests {

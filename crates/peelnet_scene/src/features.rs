@@ -81,10 +81,8 @@ impl SceneFeatures {
 /// statistics are gathered.
 fn beyond_pixels(scene: &Scene) -> [SceneFeature; 3] {
     let several = scene.layers().len() > 1;
-    let layered = scene
-        .objects
-        .iter()
-        .filter(|o| several && o.layer.is_some());
+    let is_layered = |o: &&Object| several && o.layer.is_some();
+    let layered = scene.objects.iter().filter(is_layered);
     let ages = scene.timeline.len() > 1;
     let states = scene.timeline.iter().filter(|_| ages);
     let method = "up to the method: a learned or moment method adds a pass over the surfaces";

@@ -40,10 +40,6 @@ const DISPLACED: [&str; 3] = [
 ];
 
 impl RawMaterial {
-    pub fn has_maps(&self) -> bool {
-        self.given().iter().any(|key| key.ends_with("_map"))
-    }
-
     /// The first of these keys that is given.
     fn first(&self, keys: &[&str]) -> Option<&'static str> {
         self.given().into_iter().find(|key| keys.contains(key))

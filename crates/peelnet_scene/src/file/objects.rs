@@ -22,7 +22,9 @@ pub(super) fn place(
     field: String,
 ) -> Result<Object, SceneError> {
     let at_mesh = format!("{field}.mesh");
-    let mut mesh = loader.mesh(&raw.mesh, raw.material.has_maps(), &at_mesh)?;
+    let mut given = raw.material.given().into_iter();
+    let has_maps = given.any(|key| key.ends_with("_map"));
+    let mut mesh = loader.mesh(&raw.mesh, has_maps, &at_mesh)?;
     if let Some(ends) = raw.vertex_colors {
         let at = format!("{field}.vertex_colors");
         if !ends.iter().flatten().all(|x| (0.0..=1.0).contains(x)) {
