@@ -27,7 +27,7 @@ pub(super) fn read(path: &Path, bytes: &[u8], files: &mut Files<'_>) -> Result<M
     let head = head_length(bytes)?;
     let is_text = String::from_utf8_lossy(&bytes[..head]).contains("format ascii");
     let bytes = if is_text {
-        Cow::Owned(rewritten(bytes, head))
+        Cow::Owned(rewritten(bytes)?)
     } else {
         Cow::Borrowed(bytes)
     };
@@ -119,12 +119,10 @@ fn head_length(bytes: &[u8]) -> Result<usize, Fault> {
 }
 
 /// A file of text as the crate reads it: a line for each element, and numbers as Rust writes them.
-fn rewritten(bytes: &[u8], head: usize) -> Vec<u8> {
+fn rewritten(bytes: &[u8]) -> Result<Vec<u8>, Fault> {
     let text = String::from_utf8_lossy(bytes).replace("\r\n", "\n");
     let text = text.replace('\r', "\n");
-    let head = text[..head.min(text.len())]
-        .rfind("end_header")
-        .unwrap_or(0);
+    let head = head_length(text.as_bytes())?;
     let (head, body) = text.split_at(text[head..].find('\n').map_or(text.len(), |n| head + n + 1));
     let mut out = head.to_owned();
     for line in body.lines().filter(|line| !line.trim().is_empty()) {
@@ -136,19 +134,16 @@ fn rewritten(bytes: &[u8], head: usize) -> Vec<u8> {
         out.push_str(&words.join(" "));
         out.push('\n');
     }
-    out.into_bytes()
+    Ok(out.into_bytes())
 }
 
 /// Checks that each name stands once, as the crate keeps one of two, and that as many bytes as the header's counts need follow it.
 fn check_header(header: &Header, head: &[u8], held: u64) -> Result<(), Fault> {
     let text = String::from_utf8_lossy(head);
-    let lines = |word: &str| {
-        text.split(['\n', '\r'])
-            .filter(|l| l.starts_with(word))
-            .count()
-    };
+    let lines = text.split(['\n', '\r']);
+    let count = |word: &str| lines.clone().filter(|l| l.starts_with(word)).count();
     let properties = header.elements.values().map(|e| e.properties.len());
-    if lines("element") != header.elements.len() || lines("property") != properties.sum::<usize>() {
+    if count("element") != header.elements.len() || count("property") != properties.sum::<usize>() {
         let message = "its header names an element or a property twice; export it again";
         return Err(in_file(message));
     }
@@ -197,11 +192,9 @@ struct Faces<'a> {
 impl Faces<'_> {
     fn vertices(&mut self, vertices: Vec<Vertex>, element: &ElementDef) -> Result<(), Fault> {
         let has = |names: &[&str]| names.iter().any(|n| element.properties.contains_key(*n));
-        for axis in ["x", "y", "z"] {
-            if !has(&[axis]) {
-                let message = format!("its vertices have no '{axis}'; export the mesh again");
-                return Err(in_file(message));
-            }
+        if let Some(axis) = ["x", "y", "z"].into_iter().find(|axis| !has(&[axis])) {
+            let message = format!("its vertices have no '{axis}'; export the mesh again");
+            return Err(in_file(message));
         }
         for (i, vertex) in vertices.iter().enumerate() {
             let position = Vec3::from(vertex.position);

@@ -48,8 +48,7 @@ pub(super) fn read(path: &Path, bytes: &[u8], files: &mut Files<'_>) -> Result<M
         let more = counted(held - needed, "byte");
         files.warn(path, &(more + " behind its last triangle are not read"));
     }
-    let taken = files.budget.take_mesh(count, 0);
-    taken.map_err(in_file)?;
+    files.budget.take_mesh(count, 0).map_err(in_file)?;
     let mut soup = Soup::default();
     let facets = &bytes[HEADER + COUNT..needed as usize];
     for (i, facet) in facets.chunks_exact(TRIANGLE).enumerate() {
