@@ -25,13 +25,6 @@ const MOST_CUTS: u32 = 6;
 /// Lengths beyond this overflow when they are squared.
 const LONGEST: f32 = 1e15;
 
-impl Displacement {
-    /// How far the surface moves at a place of the texture.
-    fn at(&self, uv: Vec2, wrap: [Wrap; 2]) -> f32 {
-        self.scale * (luminance(&self.map, uv, wrap) - self.middle)
-    }
-}
-
 /// A texture's luminance between its four nearest texels, which hold heights and no light: its bytes are linear.
 fn luminance(map: &Texture, uv: Vec2, wrap: [Wrap; 2]) -> f32 {
     let size = map.size.map(|n| n as f32);
@@ -176,8 +169,8 @@ fn moves(mesh: &Mesh, materials: &[Material]) -> HashMap<[u32; 3], Vec3> {
                     continue;
                 }
                 let uv = mesh.uvs.get(t).map(|uvs| uvs[k]);
-                let height = displacement.zip(uv).map_or(0.0, |(displacement, uv)| {
-                    displacement.at(uv, material.maps.wrap)
+                let height = displacement.zip(uv).map_or(0.0, |(d, uv)| {
+                    d.scale * (luminance(&d.map, uv, material.maps.wrap) - d.middle)
                 });
                 let around = all.entry(key_of(a)).or_default();
                 around.0 += mesh.normals[triangle[k]].as_dvec3() * angle;

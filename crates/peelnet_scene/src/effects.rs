@@ -7,7 +7,7 @@ use crate::{
     scene::{Light, Object, Scene, Source},
 };
 use bitflags::bitflags;
-use std::fmt;
+use std::{fmt, sync::LazyLock};
 
 bitflags! {
     /// Pipeline specialisation key of a material. Each distinct key of a scene gets its own
@@ -67,34 +67,14 @@ impl MaterialFlags {
         .union(Self::METALLIC_ROUGHNESS_MAP)
         .union(Self::OCCLUSION_MAP);
 
-    /// Every flag that shaders know with its feature there, in the order in which features are
-    /// listed.
-    const FEATURES: &[(Self, &str)] = &[
-        (Self::LIT, "lit"),
-        (Self::PHONG, "phong"),
-        (Self::PBR, "pbr"),
-        (Self::EMISSION, "emission"),
-        (Self::CUTOUT, "cutout"),
-        (Self::MAPPED, "mapped"),
-        (Self::COLOR_MAP, "color_map"),
-        (Self::NORMAL_MAP, "normal_map"),
-        (Self::METALLIC_ROUGHNESS_MAP, "metallic_roughness_map"),
-        (Self::OCCLUSION_MAP, "occlusion_map"),
-        (Self::EMISSIVE_MAP, "emissive_map"),
-        (Self::CLEAR_MAP, "clear_map"),
-        (Self::VERTEX_COLORS, "vertex_colors"),
-        (Self::SUN, "sun"),
-        (Self::TRANSMISSION, "transmission"),
-    ];
-
     /// The flags of a material on an object, in the light of a scene ([`Scene::light_flags`]).
     pub fn new(material: &Material, object: &Object, lights: Self) -> Self {
         let rows = EFFECTS.iter();
         let needed = rows.filter(|effect| effect.is_needed_by(material, object, lights));
-        let flags: Self = needed.map(|effect| effect.flag).collect();
-        let is_clear = material.maps.color.as_ref().is_some_and(|m| m.has_alpha());
-        let clear = is_clear.then_some(Self::CLEAR_MAP);
-        (flags | clear.unwrap_or_default()).with_implied()
+        let mut flags: Self = needed.map(|effect| effect.flag).collect();
+        let is_clear = material.maps.color.as_ref().is_some_and(|m| m.has_alpha);
+        flags.set(Self::CLEAR_MAP, is_clear);
+        flags.with_implied()
     }
 
     /// With [`Self::LIT`] where it is lit by a model, and [`Self::MAPPED`] where it reads textures.
@@ -116,12 +96,17 @@ impl MaterialFlags {
         self.intersects(Self::OF_LIT)
     }
 
-    /// The shader features that it links.
+    /// The shader features that it links: its flags' names in lower case, but for culling, of which
+    /// shaders know nothing.
     pub fn features(self) -> Vec<&'static str> {
-        let on = Self::FEATURES
-            .iter()
-            .filter(|(flag, _)| self.contains(*flag));
-        on.map(|(_, feature)| *feature).collect()
+        static NAMES: LazyLock<Vec<(MaterialFlags, String)>> = LazyLock::new(|| {
+            let flags = (MaterialFlags::all() - MaterialFlags::CULLED).iter_names();
+            flags
+                .map(|(name, flag)| (flag, name.to_lowercase()))
+                .collect()
+        });
+        let on = NAMES.iter().filter(|(flag, _)| self.contains(*flag));
+        on.map(|(_, name)| name.as_str()).collect()
     }
 }
 
@@ -145,6 +130,8 @@ pub struct Effect {
 enum Rule {
     /// A material whose number of this field is not 0.
     Number(&'static str),
+    /// A material that is lit so.
+    Lighting(Lighting),
     Material(fn(&Material) -> bool, fn(&mut Material)),
     /// A material on an object in the light of a scene.
     Surface(
@@ -181,6 +168,7 @@ impl Effect {
         }
         match self.rule {
             Rule::Number(_) => self.number().is_some_and(|n| !n.is_zero(material)),
+            Rule::Lighting(model) => material.lighting == model,
             Rule::Material(is_needed, _) => is_needed(material),
             Rule::Surface(is_needed, _) => is_needed(material, object, lights),
             Rule::Scene(..) => false,
@@ -201,8 +189,6 @@ impl PartialEq for Effect {
     }
 }
 
-impl Eq for Effect {}
-
 impl fmt::Display for Effect {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.pad(self.name)
@@ -212,26 +198,32 @@ impl fmt::Display for Effect {
 impl Scene {
     /// The scene without an effect: opaque objects are removed, lit surfaces unlit, and so on.
     pub fn without(&self, effect: &Effect) -> Self {
-        let mut scene = self.clone();
         match effect.rule {
-            Rule::Surface(_, remove) | Rule::Scene(_, remove) => remove(&mut scene),
-            Rule::Material(_, remove) => scene.change_materials(remove),
-            Rule::Number(_) => scene.change_materials(|material| {
+            Rule::Surface(_, remove) | Rule::Scene(_, remove) => {
+                let mut scene = self.clone();
+                remove(&mut scene);
+                scene
+            }
+            Rule::Material(_, remove) => self.with_materials(remove),
+            Rule::Lighting(model) => self.with_materials(|material| {
+                if material.lighting == model {
+                    material.lighting = Lighting::Unlit;
+                }
+            }),
+            Rule::Number(_) => self.with_materials(|material| {
                 let values = effect.number().map(|number| (number.values_mut)(material));
                 values.into_iter().for_each(|values| values.fill(0.0));
             }),
         }
-        scene
     }
 
     /// Which of [`MaterialFlags::LIT`] and [`MaterialFlags::SUN`] its lights make possible.
     pub fn light_flags(&self) -> MaterialFlags {
         let is_sun = |l: &Light| matches!(l.source, Source::Toward(_));
-        match &self.lights[..] {
-            [] => MaterialFlags::empty(),
-            lights if lights.iter().any(is_sun) => MaterialFlags::LIT | MaterialFlags::SUN,
-            _ => MaterialFlags::LIT,
-        }
+        let mut flags = MaterialFlags::empty();
+        flags.set(MaterialFlags::LIT, !self.lights.is_empty());
+        flags.set(MaterialFlags::SUN, self.lights.iter().any(is_sun));
+        flags
     }
 }
 
@@ -264,20 +256,14 @@ pub static EFFECTS: &[Effect] = &[
         flag: MaterialFlags::PHONG,
         needed_by: "`lighting = \"phong\"`, and a light",
         adds: "normals and positions, a binding of lights, Blinn–Phong in the shader",
-        rule: Rule::Material(
-            |m| m.lighting == Lighting::Phong,
-            |m| unlight(m, Lighting::Phong),
-        ),
+        rule: Rule::Lighting(Lighting::Phong),
     },
     Effect {
         name: "pbr",
         flag: MaterialFlags::PBR,
         needed_by: "`lighting = \"pbr\"` with `metallic` and `roughness`, and a light",
         adds: "normals and positions, a binding of lights, Cook–Torrance in the shader",
-        rule: Rule::Material(
-            |m| m.lighting == Lighting::Pbr,
-            |m| unlight(m, Lighting::Pbr),
-        ),
+        rule: Rule::Lighting(Lighting::Pbr),
     },
     Effect {
         name: "cutout",
@@ -333,7 +319,7 @@ pub static EFFECTS: &[Effect] = &[
         needed_by: "`emissive_map`, where the material emits",
         adds: TEXTURE,
         rule: Rule::Material(
-            |m| m.is_emissive() && m.maps.emissive.is_some(),
+            |m| m.emission != [0.0; 3] && m.maps.emissive.is_some(),
             |m| m.maps.emissive = None,
         ),
     },
@@ -403,12 +389,6 @@ pub static EFFECTS: &[Effect] = &[
         ),
     },
 ];
-
-fn unlight(material: &mut Material, lighting: Lighting) {
-    if material.lighting == lighting {
-        material.lighting = Lighting::Unlit;
-    }
-}
 
 #[cfg(test)]
 mod tests {

@@ -81,10 +81,8 @@ impl SceneFeatures {
 /// statistics are gathered.
 fn beyond_pixels(scene: &Scene) -> [SceneFeature; 3] {
     let several = scene.layers().len() > 1;
-    let layered = scene
-        .objects
-        .iter()
-        .filter(|o| several && o.layer.is_some());
+    let is_layered = |o: &&Object| several && o.layer.is_some();
+    let layered = scene.objects.iter().filter(is_layered);
     let ages = scene.timeline.len() > 1;
     let states = scene.timeline.iter().filter(|_| ages);
     let method = "up to the method: a learned or moment method adds a pass over the surfaces";
@@ -118,7 +116,7 @@ impl Scene {
             let mut numbers = NUMBERS.iter().map(|number| (number.values)(m));
             let maps = [&m.maps.color, &m.maps.emissive];
             numbers.all(|values| values.iter().all(|x| *x == values[0]))
-                && maps.into_iter().flatten().all(|map| map.is_grey())
+                && maps.into_iter().flatten().all(|map| map.is_grey)
         };
         let vertices = |o: &Object| o.mesh.colors.iter().all(|&[r, g, b, _]| grey([r, g, b]));
         let object = |o: &Object| o.materials.iter().all(material) && vertices(o);
@@ -133,8 +131,8 @@ impl Scene {
         let mut materials = self.objects.iter().flat_map(|o| &o.materials);
         materials.any(|m| {
             let [r, g, b] = m.transmission;
-            let mapped = m.maps.color.as_ref().is_some_and(|map| !map.is_grey());
-            m.is_transmissive() && (r != g || g != b || mapped)
+            let mapped = m.maps.color.as_ref().is_some_and(|map| !map.is_grey);
+            m.transmission != [0.0; 3] && (r != g || g != b || mapped)
         })
     }
 }

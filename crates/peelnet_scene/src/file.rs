@@ -6,7 +6,6 @@ mod materials;
 mod mesh_scene;
 mod objects;
 pub(crate) mod raw;
-pub(crate) mod reference;
 mod timeline;
 mod views;
 

@@ -34,8 +34,8 @@ pub(crate) fn loader(path: &Path) -> Option<Load> {
     let load: Load = match &*ending {
         "gltf" | "glb" => gltf::load,
         "obj" => obj::load,
-        "ply" => ply::load,
-        "stl" => stl::load,
+        "ply" => |path, files| surface::load(path, files, ply::read),
+        "stl" => |path, files| surface::load(path, files, stl::read),
         _ => return None,
     };
     Some(load)

@@ -2,10 +2,12 @@
 
 use crate::{
     error::{Fault, within},
-    file::reference::MapRef,
+    file::raw::MapRef,
     texture::{Maps, Wrap},
 };
+use bytemuck::{cast_slice, cast_slice_mut};
 use serde::Deserialize;
+use std::slice::{from_mut, from_ref};
 
 /// How a surface is lit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
@@ -106,17 +108,7 @@ impl Material {
     /// Whether it is drawn by the opaque pass.
     pub fn is_opaque(&self) -> bool {
         let whole = self.alpha_cutoff.is_some() || self.alpha >= 1.0;
-        whole && !self.blend && !self.is_transmissive()
-    }
-
-    /// Whether light passes through what its opacity covers.
-    pub fn is_transmissive(&self) -> bool {
-        self.transmission != [0.0; 3]
-    }
-
-    /// Whether it emits anything.
-    pub fn is_emissive(&self) -> bool {
-        self.emission != [0.0; 3]
+        whole && !self.blend && self.transmission == [0.0; 3]
     }
 }
 
@@ -189,32 +181,6 @@ impl Material {
     }
 }
 
-/// One number, or three.
-trait Floats {
-    fn floats(&self) -> &[f32];
-    fn floats_mut(&mut self) -> &mut [f32];
-}
-
-impl Floats for f32 {
-    fn floats(&self) -> &[f32] {
-        std::slice::from_ref(self)
-    }
-
-    fn floats_mut(&mut self) -> &mut [f32] {
-        std::slice::from_mut(self)
-    }
-}
-
-impl Floats for [f32; 3] {
-    fn floats(&self) -> &[f32] {
-        self
-    }
-
-    fn floats_mut(&mut self) -> &mut [f32] {
-        self
-    }
-}
-
 /// Declares the keys of a material, all of which may be left out: type, bounds of each number, and
 /// of those that are fields of [`Material`] the field, with [`Number::place`] and
 /// [`Number::control`] where they have any.
@@ -243,7 +209,7 @@ macro_rules! material_keys {
 
             pub fn check_bounds(&self) -> Result<(), Fault> {
                 $($(
-                    for value in self.$key.iter().flat_map(|value| value.floats()) {
+                    for value in cast_slice(self.$key.as_slice()) {
                         within(stringify!($key), *value, $low, $high)?;
                     }
                 )?)*
@@ -270,8 +236,8 @@ macro_rules! material_keys {
                     length: size_of::<$type>() / size_of::<f32>(),
                     place: None,
                     control: None,
-                    values: |material| material.$($field).+.floats(),
-                    values_mut: |material| material.$($field).+.floats_mut(),
+                    values: |material| cast_slice(from_ref(&material.$($field).+)),
+                    values_mut: |material| cast_slice_mut(from_mut(&mut material.$($field).+)),
                 }
             },
         )?)*];

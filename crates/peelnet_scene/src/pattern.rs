@@ -260,14 +260,12 @@ mod tests {
             let p = pattern(&format!("pattern = '{name}'\nsize = 128\nwidth = 0.3"));
             let v = p.values();
             let at = |x: u32, y: u32| v[(y * 128 + x % 128) as usize];
-            let (lo, hi) = v
-                .iter()
-                .fold((1f32, 0f32), |(a, b), &x| (a.min(x), b.max(x)));
+            let ends = |(a, b): (f32, f32), &x: &f32| (a.min(x), b.max(x));
+            let (lo, hi) = v.iter().fold((1.0, 0.0), ends);
             assert!(lo >= 0.0 && hi <= 1.0 && hi - lo > 0.5, "{name}: {lo} {hi}");
             let step = |x: u32| {
-                (0..128)
-                    .map(|y| (at(x + 1, y) - at(x, y)).abs())
-                    .fold(0f32, f32::max)
+                let steps = (0..128).map(|y| (at(x + 1, y) - at(x, y)).abs());
+                steps.fold(0f32, f32::max)
             };
             let inside = (0..127).map(step).fold(0f32, f32::max);
             assert!(step(127) <= inside, "{name}: {} {inside}", step(127));

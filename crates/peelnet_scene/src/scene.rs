@@ -47,11 +47,11 @@ impl Object {
     /// An object of triangles in world space, each with its own vertices and normal.
     pub fn of_triangles(name: &str, triangles: &[[Vec3; 3]], material: Material) -> Self {
         let normal = |[a, b, c]: &[Vec3; 3]| (b - a).cross(c - a).normalize_or(Vec3::Z);
-        let firsts = (0..triangles.len() as u32).map(|i| 3 * i);
+        let numbers = 0..triangles.len() as u32;
         let mesh = Mesh {
             positions: triangles.iter().flatten().copied().collect(),
             normals: triangles.iter().flat_map(|t| [normal(t); 3]).collect(),
-            triangles: firsts.map(|i| [i, i + 1, i + 2]).collect(),
+            triangles: numbers.map(|i| [0, 1, 2].map(|k| 3 * i + k)).collect(),
             ..Mesh::default()
         };
         Self {
@@ -180,11 +180,8 @@ impl Scene {
                 if object.materials.iter().all(Material::is_opaque) {
                     continue;
                 }
-                let message = format!(
-                    "of '{}' is missing: it is transparent",
-                    printable(&object.name)
-                );
-                return Err(fail(message));
+                let name = printable(&object.name);
+                return Err(fail(format!("of '{name}' is missing: it is transparent")));
             };
             for material in &mut object.materials {
                 material.blend = true;
@@ -205,15 +202,11 @@ impl Scene {
         })
     }
 
-    fn with_materials(&self, change: impl FnMut(&mut Material)) -> Self {
+    pub(crate) fn with_materials(&self, change: impl FnMut(&mut Material)) -> Self {
         let mut scene = self.clone();
-        scene.change_materials(change);
-        scene
-    }
-
-    pub(crate) fn change_materials(&mut self, change: impl FnMut(&mut Material)) {
-        let materials = self.objects.iter_mut().flat_map(|o| &mut o.materials);
+        let materials = scene.objects.iter_mut().flat_map(|o| &mut o.materials);
         materials.for_each(change);
+        scene
     }
 
     /// The scene with every surface as opaque as before, and unlit: what transparency takes without shading. Colour maps stay, because

@@ -41,9 +41,7 @@ fn metallic(diffuse: f32, specular: f32, one_minus_strength: f32) -> f32 {
 
 /// Base colour, metallic and roughness.
 fn converted(values: Values) -> ([f32; 3], f32, f32) {
-    let Values {
-        diffuse, specular, ..
-    } = values;
+    let (diffuse, specular) = (values.diffuse, values.specular);
     let one_minus_strength = 1.0 - specular.into_iter().fold(0.0, f32::max);
     let [d, s] = [diffuse, specular].map(brightness);
     let m = metallic(d, s, one_minus_strength);

@@ -1,11 +1,15 @@
 //! Textures: read from PNG and JPEG files, or generated ([`crate::pattern`]).
 
-mod decode;
-
 use crate::budget::Budget;
+use image::{
+    DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits, error::LimitErrorKind,
+};
 use rayon::prelude::*;
 use serde::Deserialize;
-use std::{borrow::Cow, sync::Arc};
+use std::{borrow::Cow, io::Cursor, sync::Arc};
+
+/// Longest side of a texture that is read: WebGPU guarantees no longer one.
+const LONGEST: u32 = 8192;
 
 /// A texture of 8 bits a channel.
 #[derive(Clone, PartialEq, Eq)]
@@ -16,8 +20,10 @@ pub struct Texture {
     pub size: [u32; 2],
     /// Red, green, blue, alpha of every texel, row by row from the top.
     pub texels: Vec<[u8; 4]>,
-    clear: bool,
-    grey: bool,
+    /// Whether any texel is not wholly opaque.
+    pub has_alpha: bool,
+    /// Whether every texel is grey.
+    pub is_grey: bool,
 }
 
 impl std::fmt::Debug for Texture {
@@ -93,15 +99,6 @@ impl Maps {
         nearest: false,
     };
 
-    /// The keys in scene files of the five that are drawn, in the order of their bindings.
-    pub(crate) const KEYS: [&str; 5] = [
-        "color_map",
-        "normal_map",
-        "metallic_roughness_map",
-        "occlusion_map",
-        "emissive_map",
-    ];
-
     /// Whether there is any, or a displacement.
     pub(crate) fn has_any(&self) -> bool {
         self.displacement.is_some() || self.all().iter().any(Option::is_some)
@@ -124,16 +121,32 @@ impl Texture {
         Self {
             name: name.to_owned(),
             size,
-            clear: texels.par_iter().any(|t| t[3] < 255),
-            grey: texels.par_iter().all(|[r, g, b, _]| r == g && g == b),
+            has_alpha: texels.par_iter().any(|t| t[3] < 255),
+            is_grey: texels.par_iter().all(|[r, g, b, _]| r == g && g == b),
             texels,
         }
     }
 
-    /// Reads a PNG or JPEG image for a scene that has taken other textures.
+    /// Reads a PNG or JPEG image for a scene that has taken other textures, with at most one more copy of its texels in memory.
     pub(crate) fn decode(name: &str, bytes: &[u8], budget: &mut Budget) -> Result<Self, String> {
-        let (size, texels) = decode::decode(bytes, budget)?;
-        Ok(Self::new(name, size, texels))
+        let format = image::guess_format(bytes).ok();
+        let Some(format) = format.filter(|f| [ImageFormat::Png, ImageFormat::Jpeg].contains(f))
+        else {
+            return Err("is neither a PNG nor a JPEG image; save it as one of them".into());
+        };
+        let mut limits = Limits::default();
+        (limits.max_image_width, limits.max_image_height) = (Some(LONGEST), Some(LONGEST));
+        let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
+        reader.limits(limits);
+        let decoder = reader.into_decoder().map_err(|e| plain(&e))?;
+        let (width, height) = decoder.dimensions();
+        if width.max(height) > LONGEST {
+            return Err(too_large());
+        }
+        budget.take_texels([width, height])?;
+        let image = DynamicImage::from_decoder(decoder).map_err(|e| plain(&e))?;
+        let texels = image.into_rgba8().pixels().map(|p| p.0).collect();
+        Ok(Self::new(name, [width, height], texels))
     }
 
     /// A texture from a function of column and row.
@@ -145,16 +158,6 @@ impl Texture {
     pub(crate) fn opaque(&self) -> Self {
         let texels = self.texels.par_iter().map(|[r, g, b, _]| [*r, *g, *b, 255]);
         Self::new(&self.name, self.size, texels.collect())
-    }
-
-    /// Whether any texel is not wholly opaque.
-    pub fn has_alpha(&self) -> bool {
-        self.clear
-    }
-
-    /// Whether every texel is grey.
-    pub fn is_grey(&self) -> bool {
-        self.grey
     }
 
     fn at_size(&self, size: [u32; 2]) -> Cow<'_, Self> {
@@ -191,6 +194,23 @@ impl Texture {
         let at = |x: u32, y: u32| self.texels[(y % height * width + x % width) as usize][0];
         let height = |x, y| f32::from(at(x, y)) / 255.0;
         normals_of(&self.name, self.size, slope, height)
+    }
+}
+
+fn too_large() -> String {
+    format!("is larger than {LONGEST} texels wide or high; save it smaller")
+}
+
+/// An error in plain words: the decoders' own show their inner state.
+fn plain(e: &ImageError) -> String {
+    match e {
+        ImageError::Limits(e) if matches!(e.kind(), LimitErrorKind::DimensionError) => too_large(),
+        ImageError::Limits(_) => "needs too much memory; save it smaller".into(),
+        ImageError::Unsupported(_) => {
+            "is a kind of PNG or JPEG that is not read; save it again with 8 bits a channel".into()
+        }
+        ImageError::IoError(_) => "is cut off; save it again".into(),
+        _ => "is damaged or cut off; save it again".into(),
     }
 }
 

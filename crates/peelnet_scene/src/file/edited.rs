@@ -3,11 +3,11 @@
 use super::raw::RawObject;
 use crate::{
     camera::Camera,
+    effects::MaterialFlags,
     error::SceneError,
-    material::{Lighting, Material, NUMBERS},
+    material::{Material, NUMBERS},
     scatter::from_fixed_axes,
     scene::{Light, Object, Scene, Source},
-    texture::Maps,
 };
 use glam::{Mat4, Quat, Vec3};
 use peelnet_core::files::printable;
@@ -143,7 +143,9 @@ fn write_object(own: &mut Table, now: &Object, before: &Object, name: &str) -> V
     let mut left_out = Vec::new();
     if now.world_from_object != before.world_from_object {
         // What a mesh's `fit` does comes first, and stays.
-        let wanted = now.world_from_object * before.world_from_object.inverse() * placed(own);
+        let said = RawObject::deserialize(own.clone());
+        let said = said.map_or(Mat4::IDENTITY, |raw| raw.placed());
+        let wanted = now.world_from_object * before.world_from_object.inverse() * said;
         match similarity(wanted) {
             Some((scale, rotation, translation)) => {
                 own.insert("scale".into(), number(scale));
@@ -158,9 +160,7 @@ fn write_object(own: &mut Table, now: &Object, before: &Object, name: &str) -> V
     match (now.materials.as_slice(), before.materials.as_slice()) {
         (now, before) if now == before => {}
         ([now], [before]) => {
-            let table = own
-                .entry("material")
-                .or_insert_with(|| Value::Table(Table::new()));
+            let table = own.entry("material").or_insert(Table::new().into());
             if let Some(table) = table.as_table_mut() {
                 write_material(table, now, before);
             }
@@ -175,12 +175,6 @@ fn write_object(own: &mut Table, now: &Object, before: &Object, name: &str) -> V
         )),
     }
     left_out
-}
-
-/// The transform that an object's keys say, without `fit`.
-fn placed(own: &Table) -> Mat4 {
-    let raw = RawObject::deserialize(own.clone());
-    raw.map_or(Mat4::IDENTITY, |raw| raw.placed())
 }
 
 fn largest(matrix: Mat4) -> f32 {
@@ -207,13 +201,9 @@ fn similarity(matrix: Mat4) -> Option<(f32, Quat, Vec3)> {
 }
 
 fn write_material(table: &mut Table, now: &Material, before: &Material) {
-    let lighting = match now.lighting {
-        Lighting::Unlit => "unlit",
-        Lighting::Phong => "phong",
-        Lighting::Pbr => "pbr",
-    };
     if now.lighting != before.lighting {
-        table.insert("lighting".into(), lighting.into());
+        let name = format!("{:?}", now.lighting).to_lowercase();
+        table.insert("lighting".into(), name.into());
     }
     if now.double_sided != before.double_sided {
         table.insert("double_sided".into(), now.double_sided.into());
@@ -229,8 +219,10 @@ fn write_material(table: &mut Table, now: &Material, before: &Material) {
         }
     }
     if now.maps != before.maps {
-        for (key, map) in Maps::KEYS.into_iter().zip(now.maps.all()) {
-            if map.is_none() {
+        let maps = MaterialFlags::MAPS.into_iter().zip(now.maps.all());
+        // A key of a scene file is the feature that it needs.
+        for (flag, _) in maps.filter(|(_, map)| map.is_none()) {
+            for key in flag.features() {
                 table.remove(key);
             }
         }
@@ -240,20 +232,14 @@ fn write_material(table: &mut Table, now: &Material, before: &Material) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::suite;
-    use std::path::Path;
+    use crate::{material::Lighting, suite};
 
     fn saved(scene: &Scene, loaded: &Scene, text: Option<&str>, view: Option<&Camera>) -> Edited {
         scene.edited(loaded, text, view).expect("writes")
     }
 
     fn read(text: &str) -> Scene {
-        let name = Path::new("edited.toml");
-        Scene::from_bytes(name, |path| match path == name {
-            true => Ok(text.as_bytes().to_vec()),
-            false => Err(std::io::ErrorKind::NotFound.into()),
-        })
-        .expect("reads")
+        Scene::from_bytes("edited.toml", |_| Ok(text.into())).expect("reads")
     }
 
     /// What is written reads back as what was shown.
@@ -274,6 +260,7 @@ mod tests {
         let material = &mut scene.objects[1].materials[0];
         (material.alpha, material.color) = (0.125, [0.1, 0.2, 0.3]);
         material.double_sided = !material.double_sided;
+        material.lighting = Lighting::Pbr;
         scene.lights[0].intensity = 2.5;
         scene.lights.push(Light {
             source: Source::Toward(Vec3::new(0.6, 0.8, 0.0)),

@@ -1,9 +1,6 @@
 //! What all parts of a scene file share while it is loaded.
 
-use super::{
-    raw::MeshRef,
-    reference::{MapRef, Reference},
-};
+use super::raw::{MapRef, MeshRef, Reference};
 use crate::{
     error::{Fault, SceneError, shown},
     files::Files,

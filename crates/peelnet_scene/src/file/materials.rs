@@ -1,6 +1,6 @@
 //! Materials: a mesh's own, with the values and textures that the scene file sets.
 
-use super::{loader::Loader, reference::MapRef};
+use super::{loader::Loader, raw::MapRef};
 use crate::{
     error::{Fault, SceneError, check_color},
     material::{AlphaMode, Lighting, Material, RawMaterial},
@@ -40,10 +40,6 @@ const DISPLACED: [&str; 3] = [
 ];
 
 impl RawMaterial {
-    pub fn has_maps(&self) -> bool {
-        self.given().iter().any(|key| key.ends_with("_map"))
-    }
-
     /// The first of these keys that is given.
     fn first(&self, keys: &[&str]) -> Option<&'static str> {
         self.given().into_iter().find(|key| keys.contains(key))
@@ -83,7 +79,7 @@ impl RawMaterial {
             None => {
                 // A colour map with transparent texels makes the surface transparent.
                 let own = self.color_map.as_ref().and(maps.color.as_ref());
-                let is_clear = own.is_some_and(|map| map.has_alpha());
+                let is_clear = own.is_some_and(|map| map.has_alpha);
                 let blend = self.blend.unwrap_or(base.blend || is_clear);
                 (base.alpha_cutoff, blend)
             }

@@ -4,7 +4,7 @@ use crate::{
     displacement::displaced,
     error::SceneError,
     files::Files,
-    import::{Imported, Load},
+    import::Load,
     material::{Lighting, Material},
     mesh::Mesh,
     scene::{Light, Object, Scene, Source},
@@ -17,19 +17,15 @@ const VIEWS: u32 = 3;
 
 /// A mesh file with its own lights and cameras; where it has none, with two lights, and a camera that sees all of it from three sides.
 pub(super) fn load(path: &Path, load: Load, mut files: Files<'_>) -> Result<Scene, SceneError> {
-    let Imported {
-        mesh,
-        mut lights,
-        cameras,
-        is_scene,
-    } = load(path, &mut files)?;
+    let file = load(path, &mut files)?;
+    let mut lights = file.lights;
     let fail = |message: String| SceneError::file(path, None, message);
-    let materials = mesh.parts.iter().map(|p| p.material.clone());
+    let materials = file.mesh.parts.iter().map(|p| p.material.clone());
     let mut materials: Vec<Material> = materials.collect();
-    let mesh = displaced(Arc::new(mesh), &mut materials, &mut files.budget).map_err(&fail)?;
+    let mesh = displaced(Arc::new(file.mesh), &mut materials, &mut files.budget).map_err(&fail)?;
     let bounds = sphere(&mesh).map_err(&fail)?;
     budget::check(lights.len() as u64, MAX_LIGHTS as u64, "lights").map_err(&fail)?;
-    let cameras = cameras.into_iter().filter_map(|c| sound(c, bounds));
+    let cameras = file.cameras.into_iter().filter_map(|c| sound(c, bounds));
     let mut views: Vec<Camera> = cameras.collect();
     if views.is_empty() {
         views = fitting_camera(bounds).orbit(VIEWS);
@@ -38,13 +34,13 @@ pub(super) fn load(path: &Path, load: Load, mut files: Files<'_>) -> Result<Scen
         && let Some(lighting) = one_lighting(&mut materials)
     {
         // Other formats have no lights: that is no news.
-        if is_scene {
+        if file.is_scene {
             let message = "has no point light: two are added; put it into a scene file with lights of your own, or none";
             files.warn(path, message);
         }
         lights.extend(default_lights(bounds, lighting));
     }
-    if !is_scene && materials.iter().all(Material::is_opaque) {
+    if !file.is_scene && materials.iter().all(Material::is_opaque) {
         let message = "is opaque; to look through it, name it in a scene file, with material = { alpha = 0.5 }";
         files.warn(path, message);
     }

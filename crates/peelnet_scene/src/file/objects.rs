@@ -22,7 +22,9 @@ pub(super) fn place(
     field: String,
 ) -> Result<Object, SceneError> {
     let at_mesh = format!("{field}.mesh");
-    let mut mesh = loader.mesh(&raw.mesh, raw.material.has_maps(), &at_mesh)?;
+    let mut given = raw.material.given().into_iter();
+    let has_maps = given.any(|key| key.ends_with("_map"));
+    let mut mesh = loader.mesh(&raw.mesh, has_maps, &at_mesh)?;
     if let Some(ends) = raw.vertex_colors {
         let at = format!("{field}.vertex_colors");
         if !ends.iter().flatten().all(|x| (0.0..=1.0).contains(x)) {
@@ -122,7 +124,7 @@ pub(super) fn scatter(
             alpha: placed.alpha.unwrap_or(p.material.alpha),
             lighting: scatter.lighting.unwrap_or(p.material.lighting),
             // An opacity of 1 drawn from a range blends like the others.
-            blend: placed.alpha.is_some() || map.as_ref().is_some_and(|map| map.has_alpha()),
+            blend: placed.alpha.is_some() || map.as_ref().is_some_and(|map| map.has_alpha),
             maps: Maps {
                 color: map.clone().or_else(|| p.material.maps.color.clone()),
                 ..p.material.maps.clone()

@@ -1,10 +1,11 @@
 //! The scene file as TOML: tables and keys. An unknown key is an error, because a misspelt one would otherwise be silently ignored.
 
-use super::reference::{Described, Reference};
 use crate::{
-    camera::Camera, material::RawMaterial, parameters::parameters, scatter::Scatter, shapes::Shape,
+    camera::Camera, material::RawMaterial, parameters::parameters, pattern::Pattern,
+    scatter::Scatter, shapes::Shape,
 };
 use serde::{Deserialize, Deserializer, de::Error as _};
+use std::path::PathBuf;
 use toml::Value;
 
 parameters! {
@@ -94,9 +95,44 @@ pub(super) struct RawChange {
     pub material: RawMaterial,
 }
 
+/// A path relative to the scene file, or a table that describes something generated.
+#[derive(Clone, Debug)]
+pub(crate) enum Reference<T> {
+    File(PathBuf),
+    Made(Box<T>),
+}
+
 /// A mesh: a path, or a table with `shape = …`.
 pub(crate) type MeshRef = Reference<Shape>;
 
+/// A texture: a path, or a table with `pattern = …`.
+pub(crate) type MapRef = Reference<Pattern>;
+
+/// What a table describes: the name of that, and the key that its table needs.
+pub(crate) trait Described {
+    const NAMES: [&str; 2];
+}
+
 impl Described for Shape {
     const NAMES: [&str; 2] = ["mesh", "shape"];
+}
+
+impl Described for Pattern {
+    const NAMES: [&str; 2] = ["map", "pattern"];
+}
+
+impl<'de, T: Described + Deserialize<'de>> Deserialize<'de> for Reference<T> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let [what, key] = T::NAMES;
+        match Value::deserialize(deserializer)? {
+            Value::String(path) => Ok(Self::File(path.into())),
+            Value::Table(table) if table.contains_key(key) => T::deserialize(table)
+                .map(|made| Self::Made(Box::new(made)))
+                .map_err(|e| D::Error::custom(e.message())),
+            other => Err(D::Error::custom(format!(
+                "a {what} is a path or a table with {key} = …, not {}",
+                other.type_str()
+            ))),
+        }
+    }
 }

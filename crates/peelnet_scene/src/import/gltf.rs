@@ -25,9 +25,8 @@ const MAX_JSON_BYTES: usize = 256 << 20;
 /// Checks that the length in the header of a GLB file holds that header, which the crate subtracts from it unseen. Found by fuzzing.
 fn check_length(bytes: &[u8]) -> Result<(), String> {
     const HEADER: u32 = 12;
-    let said = bytes.get(8..12).map_or(0, |said| {
-        u32::from_le_bytes([said[0], said[1], said[2], said[3]])
-    });
+    let said = bytes.get(8..12).and_then(|said| said.try_into().ok());
+    let said = said.map_or(0, u32::from_le_bytes);
     if said < HEADER {
         return Err(format!(
             "is no glTF 2.0 file: its header says that it has {}, of which the header alone takes {HEADER}; export it again",
@@ -98,10 +97,8 @@ pub(super) fn load(path: &Path, files: &mut Files<'_>) -> Result<Imported, Scene
     if document.skins().len() > 0 {
         reader.missing("skins (the bind pose is drawn)", "", "");
     }
-    for extension in document
-        .extensions_used()
-        .filter(|e| !ENABLED_EXTENSIONS.contains(e))
-    {
+    let is_unknown = |extension: &&str| !ENABLED_EXTENSIONS.contains(extension);
+    for extension in document.extensions_used().filter(is_unknown) {
         reader.missing("extensions: ", &printable(extension), "");
     }
     if reader.loaded.mesh.triangles.is_empty() {

@@ -174,9 +174,8 @@ fn material(m: &tobj::Material, lighting: Lighting) -> Material {
     let is_pbr = lighting != Lighting::Unlit && (roughness.is_some() || metallic.is_some());
     let [color, specular] =
         [m.diffuse, m.specular].map(|c| c.map(|c| c.map(|x| x.clamp(0.0, 1.0))));
-    let alpha = m
-        .dissolve
-        .or(number("Tr").map(|transparency| 1.0 - transparency));
+    let transparency = number("Tr");
+    let alpha = m.dissolve.or(transparency.map(|x| 1.0 - x));
     Material {
         name: m.name.clone(),
         lighting: if is_pbr { Lighting::Pbr } else { lighting },

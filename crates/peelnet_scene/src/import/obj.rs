@@ -228,19 +228,14 @@ fn surface(mesh: &tobj::Mesh, triangulator: &mut Triangulator) -> Result<Mesh, S
         triangles.extend(cut.into_iter().map(|t| t.map(|k| face[k])));
     }
     // v runs up in OBJ, down here.
-    let uv = |i: u32| {
-        Vec2::new(
-            mesh.texcoords[2 * i as usize],
-            1.0 - mesh.texcoords[2 * i as usize + 1],
-        )
-    };
-    let has_uvs = mesh.texcoords.len() == 2 * n;
+    let uvs = mesh.texcoords.chunks(2);
+    let uvs: Vec<Vec2> = uvs.map(|uv| Vec2::new(uv[0], 1.0 - uv[1])).collect();
     let colors = vectors(&mesh.vertex_color).into_iter();
     let colors = colors.map(|c| c.clamp(Vec3::ZERO, Vec3::ONE).extend(1.0).to_array());
     let normals = Some(vectors(&mesh.normals)).filter(|all| all.len() == n);
-    let with_uvs = triangles.iter().filter(|_| has_uvs);
+    let with_uvs = triangles.iter().filter(|_| uvs.len() == n);
     Ok(Mesh {
-        uvs: with_uvs.map(|t| t.map(uv)).collect(),
+        uvs: with_uvs.map(|t| t.map(|i| uvs[i as usize])).collect(),
         normals: normals.unwrap_or_default(),
         colors: colors.collect(),
         positions,

@@ -4,12 +4,11 @@
 //! file cannot hold, and numbers of text that its grammar refuses, such as `.5` and `1.`, are written in another way.
 
 use super::{
-    Imported,
     ply_elements::{Face, INDICES, RED, Skipped, U, Vertex},
     polygons::{Triangulator, strip},
-    surface::{self, Fault, fault_of, in_file},
+    surface::{Fault, fault_of, in_file},
 };
-use crate::{budget::Budget, error::SceneError, files::Files, mesh::Mesh};
+use crate::{budget::Budget, files::Files, mesh::Mesh};
 use glam::{DVec3, Vec2, Vec3};
 use peelnet_core::files::{counted, printable};
 use ply_rs_bw::{
@@ -24,15 +23,11 @@ const MAX_HEADER: usize = 1 << 20;
 /// triangle strips.
 ///
 /// Colours in bytes are sRGB, as programs show them, colours in floating-point numbers linear. Missing normals are computed.
-pub(super) fn load(path: &Path, files: &mut Files<'_>) -> Result<Imported, SceneError> {
-    surface::load(path, files, read)
-}
-
-fn read(path: &Path, bytes: &[u8], files: &mut Files<'_>) -> Result<Mesh, Fault> {
+pub(super) fn read(path: &Path, bytes: &[u8], files: &mut Files<'_>) -> Result<Mesh, Fault> {
     let head = head_length(bytes)?;
     let is_text = String::from_utf8_lossy(&bytes[..head]).contains("format ascii");
     let bytes = if is_text {
-        Cow::Owned(rewritten(bytes, head))
+        Cow::Owned(rewritten(bytes)?)
     } else {
         Cow::Borrowed(bytes)
     };
@@ -124,12 +119,10 @@ fn head_length(bytes: &[u8]) -> Result<usize, Fault> {
 }
 
 /// A file of text as the crate reads it: a line for each element, and numbers as Rust writes them.
-fn rewritten(bytes: &[u8], head: usize) -> Vec<u8> {
+fn rewritten(bytes: &[u8]) -> Result<Vec<u8>, Fault> {
     let text = String::from_utf8_lossy(bytes).replace("\r\n", "\n");
     let text = text.replace('\r', "\n");
-    let head = text[..head.min(text.len())]
-        .rfind("end_header")
-        .unwrap_or(0);
+    let head = head_length(text.as_bytes())?;
     let (head, body) = text.split_at(text[head..].find('\n').map_or(text.len(), |n| head + n + 1));
     let mut out = head.to_owned();
     for line in body.lines().filter(|line| !line.trim().is_empty()) {
@@ -141,19 +134,16 @@ fn rewritten(bytes: &[u8], head: usize) -> Vec<u8> {
         out.push_str(&words.join(" "));
         out.push('\n');
     }
-    out.into_bytes()
+    Ok(out.into_bytes())
 }
 
 /// Checks that each name stands once, as the crate keeps one of two, and that as many bytes as the header's counts need follow it.
 fn check_header(header: &Header, head: &[u8], held: u64) -> Result<(), Fault> {
     let text = String::from_utf8_lossy(head);
-    let lines = |word: &str| {
-        text.split(['\n', '\r'])
-            .filter(|l| l.starts_with(word))
-            .count()
-    };
+    let lines = text.split(['\n', '\r']);
+    let count = |word: &str| lines.clone().filter(|l| l.starts_with(word)).count();
     let properties = header.elements.values().map(|e| e.properties.len());
-    if lines("element") != header.elements.len() || lines("property") != properties.sum::<usize>() {
+    if count("element") != header.elements.len() || count("property") != properties.sum::<usize>() {
         let message = "its header names an element or a property twice; export it again";
         return Err(in_file(message));
     }
@@ -202,11 +192,9 @@ struct Faces<'a> {
 impl Faces<'_> {
     fn vertices(&mut self, vertices: Vec<Vertex>, element: &ElementDef) -> Result<(), Fault> {
         let has = |names: &[&str]| names.iter().any(|n| element.properties.contains_key(*n));
-        for axis in ["x", "y", "z"] {
-            if !has(&[axis]) {
-                let message = format!("its vertices have no '{axis}'; export the mesh again");
-                return Err(in_file(message));
-            }
+        if let Some(axis) = ["x", "y", "z"].into_iter().find(|axis| !has(&[axis])) {
+            let message = format!("its vertices have no '{axis}'; export the mesh again");
+            return Err(in_file(message));
         }
         for (i, vertex) in vertices.iter().enumerate() {
             let position = Vec3::from(vertex.position);

@@ -3,12 +3,8 @@
 //! Read here, not by a crate: `stl_io` and its like stop after the first solid of a file without a word, and take a binary file whose header
 //! begins with `solid` for text, as many programs write it.
 
-use super::{
-    Imported,
-    surface::{self, Fault, fault_of, in_file},
-};
+use super::surface::{Fault, fault_of, in_file};
 use crate::{
-    error::SceneError,
     files::Files,
     mesh::{Mesh, area_of, key_of},
 };
@@ -17,12 +13,6 @@ use peelnet_core::files::{counted, printable};
 use rayon::prelude::*;
 use std::{collections::HashMap, path::Path};
 
-/// Reads an STL file. Vertices at equal positions are one; normals are computed: smooth, but for edges of more than 30 degrees. All solids of a file
-/// are one part. Colours, which each program writes in another way, are not read.
-pub(super) fn load(path: &Path, files: &mut Files<'_>) -> Result<Imported, SceneError> {
-    surface::load(path, files, read)
-}
-
 /// Bytes of a binary file's header, and of its count.
 const HEADER: usize = 80;
 const COUNT: usize = 4;
@@ -30,7 +20,9 @@ const COUNT: usize = 4;
 /// Bytes of a triangle of a binary file: a normal, three vertices, and two that each program uses in another way.
 const TRIANGLE: usize = 50;
 
-fn read(path: &Path, bytes: &[u8], files: &mut Files<'_>) -> Result<Mesh, Fault> {
+/// Reads an STL file. Vertices at equal positions are one; normals are computed: smooth, but for edges of more than 30 degrees. All solids of a file
+/// are one part. Colours, which each program writes in another way, are not read.
+pub(super) fn read(path: &Path, bytes: &[u8], files: &mut Files<'_>) -> Result<Mesh, Fault> {
     let number = |at: usize| bytes.get(at..at + 4).and_then(|b| b.try_into().ok());
     let count = number(HEADER).map(|count| u64::from(u32::from_le_bytes(count)));
     let needed = count.map(|n| (HEADER + COUNT) as u64 + n * TRIANGLE as u64);
@@ -56,8 +48,7 @@ fn read(path: &Path, bytes: &[u8], files: &mut Files<'_>) -> Result<Mesh, Fault>
         let more = counted(held - needed, "byte");
         files.warn(path, &(more + " behind its last triangle are not read"));
     }
-    let taken = files.budget.take_mesh(count, 0);
-    taken.map_err(in_file)?;
+    files.budget.take_mesh(count, 0).map_err(in_file)?;
     let mut soup = Soup::default();
     let facets = &bytes[HEADER + COUNT..needed as usize];
     for (i, facet) in facets.chunks_exact(TRIANGLE).enumerate() {

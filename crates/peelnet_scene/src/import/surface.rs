@@ -89,9 +89,8 @@ fn normals_by_position(parts: &[(String, Material, Mesh)]) -> HashMap<[u32; 3], 
         for t in &surface.triangles {
             let area = area_of(&surface.positions, *t);
             for &i in t {
-                *sums
-                    .entry(key_of(surface.positions[i as usize]))
-                    .or_default() += area;
+                let key = key_of(surface.positions[i as usize]);
+                *sums.entry(key).or_default() += area;
             }
         }
     }

@@ -150,7 +150,7 @@ impl Libraries<'_, '_> {
         }
         maps.normal = match (map("norm"), found.get("map_Bump")) {
             (Some(normals), _) => Some(Arc::clone(normals)),
-            (None, Some((statement, bump))) if bump.is_grey() => {
+            (None, Some((statement, bump))) if bump.is_grey => {
                 // White rises over black by an eightieth of the texture's width.
                 let slope = statement.strength * bump.size[0] as f32 / 80.0;
                 let what = format!("normals by {slope}");
@@ -203,14 +203,14 @@ impl Libraries<'_, '_> {
     ) -> Option<Arc<Texture>> {
         let Some(alpha) = alpha else {
             let color = color?;
-            if !color.has_alpha() {
+            if !color.has_alpha {
                 return Some(Arc::clone(color));
             }
             let opaque = || color.opaque();
             let made = self.files.made("colours", [Some(color), None], opaque);
             return self.drawn(made, &format!("colours of {}", color.name));
         };
-        let by_alpha = alpha.has_alpha();
+        let by_alpha = alpha.has_alpha;
         let value = |t: [u8; 4]| if by_alpha { t[3] } else { t[0] };
         let texel = |c: [u8; 4], a: [u8; 4]| [c[0], c[1], c[2], value(a)];
         let both = [color, Some(alpha)];

@@ -1,7 +1,7 @@
 //! Hair.
 
 use super::{MAX_TRIANGLES, Strands, length};
-use crate::mesh::Mesh;
+use crate::{error::within, mesh::Mesh};
 use glam::{Vec2, Vec3};
 use peelnet_core::random::Random;
 use std::f32::consts::{PI, TAU};
@@ -100,9 +100,7 @@ impl Strands {
             ("curl", self.curl, 0.0, 10.0),
             ("roots", self.roots, -1.0, 1.0),
         ] {
-            if !(low..=high).contains(&x) {
-                return Err(format!("{name} {x} must lie in {low} … {high}"));
-            }
+            within(name, x, low, high).map_err(|(name, message)| format!("{name} {message}"))?;
         }
         if !(2..=MAX_TRIANGLES).contains(&self.triangles()) {
             return Err(format!(

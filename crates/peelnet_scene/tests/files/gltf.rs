@@ -1,26 +1,23 @@
 //! glTF files as exporters write them, and as they should not.
 
 use crate::{area, assert_framed, assert_refused, image, load_files};
+use ::gltf::binary::{Glb, Header};
 use glam::{Vec2, Vec3};
 use peelnet_scene::{Lighting, Scene, Source, Wrap};
 use serde_json::{Value, json};
 
 fn glb(json: &Value, buffer: &[u8]) -> Vec<u8> {
-    let mut text = serde_json::to_vec(json).unwrap();
-    text.resize(text.len().next_multiple_of(4), b' ');
-    let mut binary = buffer.to_vec();
-    binary.resize(binary.len().next_multiple_of(4), 0);
-    let word = |n: usize| (n as u32).to_le_bytes();
-    let mut file = b"glTF".to_vec();
-    file.extend(word(2));
-    file.extend(word(12 + 8 + text.len() + 8 + binary.len()));
-    file.extend(word(text.len()));
-    file.extend(b"JSON");
-    file.extend(text);
-    file.extend(word(binary.len()));
-    file.extend(b"BIN\0");
-    file.extend(binary);
-    file
+    // Its length is written as it is.
+    let header = Header {
+        magic: *b"glTF",
+        version: 2,
+        length: 0,
+    };
+    let (json, bin) = (
+        serde_json::to_vec(json).unwrap().into(),
+        Some(buffer.into()),
+    );
+    Glb { header, json, bin }.to_vec().unwrap()
 }
 
 /// Four vertices of a square in the plane z = 0, and the indices of two triangles.
@@ -118,9 +115,9 @@ fn nodes_instances_materials_lights_and_cameras() {
     // The mirrored instance faces the same way: +z, without normals in the file.
     assert_eq!(area(mesh), 4.0 * (1.0 + 2.0));
     assert!(mesh.normals.iter().all(|n| n.z > 0.9));
-    let [glass, leaf, sign, lamp] = &scene.objects[0].materials[..4] else {
-        panic!("four materials of the first instance");
-    };
+    // Those of the first instance.
+    let materials = &scene.objects[0].materials;
+    let [glass, leaf, sign, lamp] = [0, 1, 2, 3].map(|i| &materials[i]);
     assert_eq!((glass.color, glass.alpha), ([0.2, 0.4, 0.6], 0.3));
     assert_eq!((glass.metallic, glass.roughness), (0.25, 0.75));
     assert!(glass.blend && glass.double_sided && glass.lighting == Lighting::Pbr);
@@ -185,16 +182,15 @@ fn images_vertex_colours_and_transmission() {
     ];
     let scene = load_files(&files).unwrap();
     assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
-    let [glass, leaf, sign, lamp] = &scene.objects[0].materials[..4] else {
-        panic!("four materials of the first instance");
-    };
+    let materials = &scene.objects[0].materials;
+    let [glass, leaf, sign, lamp] = [0, 1, 2, 3].map(|i| &materials[i]);
     let color = glass.maps.color.as_ref().unwrap();
     assert_eq!((color.size, color.texels[0]), ([2, 1], [255, 0, 0, 128]));
     assert_eq!(glass.maps.wrap, [Wrap::Clamp, Wrap::Mirror]);
     assert!(glass.maps.nearest && glass.maps.normal_scale == 0.5);
-    assert!(glass.maps.normal.is_some() && leaf.maps.color.as_ref().unwrap().has_alpha());
+    assert!(glass.maps.normal.is_some() && leaf.maps.color.as_ref().unwrap().has_alpha);
     // Opaque by its alpha mode, whatever its image holds.
-    assert!(!sign.maps.color.as_ref().unwrap().has_alpha());
+    assert!(!sign.maps.color.as_ref().unwrap().has_alpha);
     // Three quarters pass, one quarter is scattered.
     assert_eq!((lamp.transmission, lamp.color), ([0.75; 3], [0.25; 3]));
     let mesh = &scene.objects[0].mesh;

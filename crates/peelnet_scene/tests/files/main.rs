@@ -9,7 +9,7 @@ mod ply;
 mod scene_files;
 mod stl;
 
-use peelnet_scene::{Mesh, Scene, SceneError};
+use peelnet_scene::{Mesh, Scene};
 use std::{io, path::Path, sync::Arc};
 
 const CAMERA: &str = "[camera]\nposition = [0, 0, 6]\ntarget = [0, 0, 0]\nnear = 0.1\nfar = 100\n";
@@ -23,16 +23,17 @@ fn image(texels: &[[u8; 4]]) -> Vec<u8> {
 }
 
 /// A scene of files in memory, of which the first is loaded.
-fn load_at(files: &[(&str, &[u8])], time: Option<f32>) -> Result<Scene, SceneError> {
-    Scene::from_bytes_at(files[0].0, time, |path| {
+fn load_at(files: &[(&str, &[u8])], time: Option<f32>) -> Result<Scene, String> {
+    let scene = Scene::from_bytes_at(files[0].0, time, |path| {
         let found = files.iter().find(|(name, _)| Path::new(name) == path);
         let found = found.ok_or_else(|| io::Error::from(io::ErrorKind::NotFound));
         found.map(|(_, bytes)| bytes.to_vec())
-    })
+    });
+    scene.map_err(|e| e.to_string())
 }
 
 fn load_files(files: &[(&str, &[u8])]) -> Result<Scene, String> {
-    load_at(files, None).map_err(|e| e.to_string())
+    load_at(files, None)
 }
 
 /// `words`, between ` & `, are in the error.

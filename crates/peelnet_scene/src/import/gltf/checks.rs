@@ -13,11 +13,8 @@ use serde_json::Value;
 pub(super) fn check_references(document: &Value) -> Result<(), String> {
     // The crate would look for elements that such an extension leaves out.
     let required = document["extensionsRequired"].as_array();
-    let unknown = required.into_iter().flatten().filter_map(Value::as_str);
-    if let Some(name) = unknown
-        .into_iter()
-        .find(|name| !ENABLED_EXTENSIONS.contains(name))
-    {
+    let mut required = required.into_iter().flatten().filter_map(Value::as_str);
+    if let Some(name) = required.find(|name| !ENABLED_EXTENSIONS.contains(name)) {
         return Err(format!(
             "needs the extension {}, which is not read; export it without",
             printable(name)

@@ -85,11 +85,10 @@ impl Reader<'_, '_> {
             return known.clone();
         }
         let found = if opaque {
-            self.image(image, false)
-                .map(|found| match found.has_alpha() {
-                    true => Arc::new(found.opaque()),
-                    false => found,
-                })
+            self.image(image, false).map(|found| match found.has_alpha {
+                true => Arc::new(found.opaque()),
+                false => found,
+            })
         } else {
             let number = || format!("image {}", image.index());
             let name = image.name().map_or_else(number, str::to_owned);

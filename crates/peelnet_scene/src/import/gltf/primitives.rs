@@ -85,14 +85,12 @@ impl Reader<'_, '_> {
             });
             colors.collect::<Vec<_>>()
         });
-        let uvs: Vec<Vec2> = reader
-            .read_tex_coords(placement.set)
-            .map_or_else(Vec::new, |uvs| {
-                let (turned, moved) = placement.transform;
-                let uvs = uvs.into_f32().map(|uv| turned * Vec2::from(uv) + moved);
-                uvs.map(|uv| if uv.is_finite() { uv } else { Vec2::ZERO })
-                    .collect()
-            });
+        let (turned, moved) = placement.transform;
+        let uvs = reader.read_tex_coords(placement.set).into_iter();
+        let uvs = uvs.flat_map(|uvs| uvs.into_f32());
+        let uvs = uvs.map(|uv| turned * Vec2::from(uv) + moved);
+        let or_zero = |uv: Vec2| if uv.is_finite() { uv } else { Vec2::ZERO };
+        let uvs: Vec<Vec2> = uvs.map(or_zero).collect();
         let corners = triangles.iter().filter(|_| uvs.len() == n);
         let uvs = corners.map(|t| t.map(|i| uvs[i as usize])).collect();
         let part = Mesh {

@@ -53,10 +53,8 @@ fn supply_zeros(document: &mut Value) {
     let buffer = push(document, "buffers", json!({"byteLength": 64, "uri": zeros}));
     let view = json!({"buffer": buffer, "byteLength": 64});
     let view = push(document, "bufferViews", view);
-    for accessor in list_mut(document, "accessors")
-        .iter_mut()
-        .filter(|a| is_empty(a))
-    {
+    let accessors = list_mut(document, "accessors").iter_mut();
+    for accessor in accessors.filter(|a| is_empty(a)) {
         accessor["sparse"] = json!({
             "count": 1,
             "indices": {"bufferView": view, "componentType": 5125},
