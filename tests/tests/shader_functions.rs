@@ -11,11 +11,11 @@ use peelnet_core::{
 };
 use peelnet_model::{
     Recipe,
-    inputs::{ANCHORED, DFAOIT, Feature, NINE, NMT, THESIS, values},
+    inputs::{AnchoredInputs, DfaoitInputs, Feature, NmtInputs, SlabInputs, ThesisInputs, values},
 };
 use peelnet_render::gpu::Gpu;
 use peelnet_tests::{HALF, gpu};
-use std::collections::BTreeSet;
+use std::{any::Any, collections::BTreeSet};
 
 /// Runs `body` (WGSL statements that read `x = inputs[i]` and set `y`) for every input, with features of the shaders.
 fn evaluate(
@@ -211,37 +211,42 @@ fn features_are_the_same_in_rust_and_wgsl() {
     let warp = DepthWarp::new(1.0, 100.0);
     let lists: Vec<_> = pixels.iter().map(|pixel| points(pixel)).collect();
     let exact = SumPrecision::Exact;
-    compare_features(
-        Recipe::THESIS,
-        &THESIS,
-        pixels
-            .iter()
-            .flat_map(|pixel| pixel.iter().map(|f| deep::Row::new(f, pixel))),
-        |row| {
-            vec![
-                row.linear_depth.into(),
-                row.alpha_sum.into(),
-                row.fragment_count.into(),
-            ]
-        },
-        "let linear_depth = x0; let statistics = vec2f(x1, x2);",
-    );
-    compare_features(
-        Recipe::NMT,
-        &NMT,
-        lists
-            .iter()
-            .flat_map(|list| nmt::FragmentMoments::all(list, &warp)),
-        |seen| {
-            let ([near, far], [b0, b1, b2, b3, b4]) = (seen.extent, seen.moments);
-            vec![seen.zeta, -near, far, b0, seen.count as f64, b1, b2, b3, b4]
-        },
-        "let zeta = x0; let extent = vec2f(x1, x2); let totals = vec4f(x3, x4, 0.0, 0.0);
+    for recipe in Recipe::ALL {
+        let inputs: &dyn Any = recipe.inputs;
+        if let Some(of) = inputs.downcast_ref::<ThesisInputs>() {
+            compare_features(
+                recipe,
+                of.features,
+                pixels
+                    .iter()
+                    .flat_map(|pixel| pixel.iter().map(|f| deep::Row::new(f, pixel))),
+                |row| {
+                    vec![
+                        row.linear_depth.into(),
+                        row.alpha_sum.into(),
+                        row.fragment_count.into(),
+                    ]
+                },
+                "let linear_depth = x0; let statistics = vec2f(x1, x2);",
+            );
+        } else if let Some(of) = inputs.downcast_ref::<NmtInputs>() {
+            compare_features(
+                recipe,
+                of.features,
+                lists
+                    .iter()
+                    .flat_map(|list| nmt::FragmentMoments::all(list, &warp)),
+                |seen| {
+                    let ([near, far], [b0, b1, b2, b3, b4]) = (seen.extent, seen.moments);
+                    vec![seen.zeta, -near, far, b0, seen.count as f64, b1, b2, b3, b4]
+                },
+                "let zeta = x0; let extent = vec2f(x1, x2); let totals = vec4f(x3, x4, 0.0, 0.0);
         let moments = vec4f(x5, x6, x7, x8);",
-    );
-    compare_features(
-        Recipe::DFAOIT,
-        &DFAOIT,
+            );
+        } else if let Some(of) = inputs.downcast_ref::<DfaoitInputs>() {
+            compare_features(
+        recipe,
+        of.features,
         pixels
             .iter()
             .map(|pixel| dfaoit::Layers::from_fragments(pixel.iter().map(|f| (f.alpha, f.color)))),
@@ -252,47 +257,53 @@ fn features_are_the_same_in_rust_and_wgsl() {
         "let count = 3.0; let behind = count * vec4f(x0, x1, x2, x3); let all = vec4f(x4, x5, x6, 0.0);
         let front = vec4f(x7, x8, x9, 0.0);",
     );
-    compare_features(
-        Recipe::ANCHORED_SMALL,
-        &ANCHORED,
-        lists
-            .iter()
-            .flat_map(|list| anchored::known_fragments(list, &warp, exact))
-            .filter_map(|f| f.unknown),
-        |rest| {
-            let [m1, m2, m3, m4] = rest.means;
-            vec![
-                rest.absorbance.sqrt(),
-                rest.place,
-                m1,
-                m2,
-                m3,
-                m4,
-                rest.bias,
-            ]
-        },
-        "let rest = PeelnetRest(x0, x1, vec4f(x2, x3, x4, x5), x6);",
-    );
-    compare_features(
-        Recipe::LARGE,
-        &NINE,
-        lists
-            .iter()
-            .flat_map(|list| slabs::known_fragments(list, &warp, slabs::Design::LARGE, exact))
-            .filter_map(|f| f.unknown),
-        |b| {
-            let [low, high] = b.bounds;
-            vec![
-                b.absorbance,
-                b.place,
-                b.mean,
-                low,
-                high,
-                b.extent,
-                b.own,
-                b.nearest,
-            ]
-        },
-        "let between = PeelnetBetween(x0, x1, x2, x3, x4, x5, x6, x7);",
-    );
+        } else if let Some(of) = inputs.downcast_ref::<AnchoredInputs>() {
+            compare_features(
+                recipe,
+                of.features,
+                lists
+                    .iter()
+                    .flat_map(|list| anchored::known_fragments(list, &warp, exact))
+                    .filter_map(|f| f.unknown),
+                |rest| {
+                    let [m1, m2, m3, m4] = rest.means;
+                    vec![
+                        rest.absorbance.sqrt(),
+                        rest.place,
+                        m1,
+                        m2,
+                        m3,
+                        m4,
+                        rest.bias,
+                    ]
+                },
+                "let rest = PeelnetRest(x0, x1, vec4f(x2, x3, x4, x5), x6);",
+            );
+        } else if let Some(of) = inputs.downcast_ref::<SlabInputs>() {
+            compare_features(
+                recipe,
+                of.features,
+                lists
+                    .iter()
+                    .flat_map(|list| slabs::known_fragments(list, &warp, of.design, exact))
+                    .filter_map(|f| f.unknown),
+                |b| {
+                    let [low, high] = b.bounds;
+                    vec![
+                        b.absorbance,
+                        b.place,
+                        b.mean,
+                        low,
+                        high,
+                        b.extent,
+                        b.own,
+                        b.nearest,
+                    ]
+                },
+                "let between = PeelnetBetween(x0, x1, x2, x3, x4, x5, x6, x7);",
+            );
+        } else {
+            panic!("{recipe}: nothing is known for its inputs");
+        }
+    }
 }
