@@ -7,7 +7,6 @@ pub const TARGET: &str = "wasm32-unknown-unknown";
 /// What a page is to weigh on the line at most, bytes.
 const MOST: u64 = 3_000_000;
 
-/// Builds the page into out/web.
 pub fn web() -> Outcome {
     let mut build = command("cargo rustc --package peelnet_view --lib --crate-type cdylib");
     build.args(["--profile", "web", "--target", TARGET]);
@@ -38,7 +37,6 @@ pub fn web() -> Outcome {
     sizes(&folder)
 }
 
-/// Prints what each file weighs, and on the line.
 fn sizes(folder: &Path) -> Outcome {
     let entries = fs::read_dir(folder).map_err(|e| format!("{}: {e}", folder.display()))?;
     let mut paths: Vec<_> = entries.flatten().map(|e| e.path()).collect();
