@@ -44,10 +44,8 @@ pub fn bubble_chart(bubbles: &[Bubble], x: &str, y: &str, floor: (f64, &str)) ->
             .y_desc(y)
             .x_label_formatter(&|x| {
                 let digits = format!("{x:.3}");
-                digits
-                    .trim_end_matches('0')
-                    .trim_end_matches('.')
-                    .to_owned()
+                let digits = digits.trim_end_matches('0');
+                digits.trim_end_matches('.').to_owned()
             })
             .y_label_formatter(&|y| {
                 if *y <= floor * 1.01 {
@@ -85,10 +83,8 @@ fn overlay(mut placed: Vec<(&Bubble, i32, i32)>) -> Markup {
     let mut order = placed.clone();
     order.sort_by_key(|(b, ..)| !b.on_front);
     let mut taken = Vec::new();
-    let names: Vec<(&Bubble, Area)> = order
-        .into_iter()
-        .filter_map(|(b, x, y)| Some((b, place(b, x, y, &mut taken)?)))
-        .collect();
+    let mut named = |(b, x, y)| Some((b, place(b, x, y, &mut taken)?));
+    let names: Vec<(&Bubble, Area)> = order.into_iter().filter_map(&mut named).collect();
     html! {
         @for (b, x, y) in placed {
             circle class="point" cx=(x) cy=(y) r=(format!("{:.1}", b.radius())) fill=(b.color()) fill-opacity="0.45" stroke=(b.color()) {

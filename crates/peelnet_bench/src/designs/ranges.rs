@@ -66,9 +66,8 @@ pub(super) fn of_boxes(view: &View, scene: &Scene, camera: &Camera, size: [u32; 
         // Of length 1 along the view axis: lengths are linear depths.
         let direction = Vec3::new(across * up * width / height, upward * up, -1.0);
         let direction = world_from_view.transform_vector3(direction);
-        let crossed = boxes
-            .iter()
-            .filter_map(|b| crossed(b, camera.position, direction));
+        let boxes = boxes.iter();
+        let crossed = boxes.filter_map(|b| crossed(b, camera.position, direction));
         let ends = crossed.flatten().map(|z| z.clamp(camera.near, camera.far));
         let zetas: Vec<f64> = ends.map(|z| view.warp.apply(z.into())).collect();
         if zetas.is_empty() {

@@ -92,9 +92,6 @@ const SCALES: [f32; 2] = [1e-3, 1e3];
 /// Draws a case with every subject and checks what is seen; `notify` gets the name of every subject before it is drawn, and may end the
 /// run. With `strict`, a failure that is known on this adapter and does not occur is a failure: meant for shipped networks, not for
 /// a user's own. Pictures of what fails are saved in the folder `images`, beside the exact ones.
-///
-/// # Errors
-/// If a method cannot draw, or a picture cannot be written.
 pub fn stress(
     gpu: &Gpu,
     case: &Case,

@@ -1,7 +1,7 @@
 //! A scene with the fragments of each of its pixels: known beforehand, or found by the 64-bit reference.
 
 use super::ground_truth;
-use crate::stage::{camera, quad};
+use crate::stage::{camera, rectangle};
 use glam::Vec3;
 use peelnet_core::{
     absorbance::absorbance,
@@ -181,14 +181,8 @@ impl Trial {
                 // 90° high: half the height at depth z is z.
                 let x = |pixel: u32| (2.0 * pixel as f32 / width - 1.0) * z * width / height;
                 let y = |pixel: u32| (1.0 - 2.0 * pixel as f32 / height) * z;
-                let v = |px: u32, py: u32| Vec3::new(x(px), y(py), -z);
-                let (right, bottom) = (left + cover, top + cover);
-                quad([
-                    v(left, bottom),
-                    v(right, bottom),
-                    v(right, top),
-                    v(left, top),
-                ])
+                let vertex = |px: u32, py: u32| Vec3::new(x(px), y(py), -z);
+                rectangle([left, left + cover], [top + cover, top], vertex)
             };
             let mut fragments = Vec::new();
             for layer in &stack.layers {

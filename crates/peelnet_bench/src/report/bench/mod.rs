@@ -136,25 +136,19 @@ fn bytes(b: &Bytes) -> String {
 
 /// Error against time, the Pareto front drawn through it, a bubble for each method as large as its bytes per pixel.
 pub(crate) fn chart(points: &[Point]) -> Svg {
-    let bubble = |p: &Point| {
-        let error = if p.is_exact() {
-            "exact".to_owned()
-        } else {
-            format!("MSE {:.2e}", p.error)
-        };
-        Bubble {
-            name: p.method.clone(),
-            title: format!(
-                "{}: {error}, {:.2} x hardware blending, {} bytes a pixel",
-                p.method,
-                p.time,
-                bytes(&p.bytes)
-            ),
-            x: p.time,
-            y: p.error,
-            weight: p.bytes.mean,
-            on_front: p.on_front,
-        }
+    let bubble = |p: &Point| Bubble {
+        name: p.method.clone(),
+        title: format!(
+            "{}: {}, {:.2} x hardware blending, {} bytes a pixel",
+            p.method,
+            p.error_text(),
+            p.time,
+            bytes(&p.bytes)
+        ),
+        x: p.time,
+        y: p.error,
+        weight: p.bytes.mean,
+        on_front: p.on_front,
     };
     let bubbles: Vec<Bubble> = points.iter().map(bubble).collect();
     let x = if points.iter().any(|p| p.method == BASE) {

@@ -2,13 +2,13 @@
 
 use super::{ERROR_TO_FRONT, TIME_TO_FRONT, TO_BASE, TO_MOMENTS, TO_WEIGHTED, bytes, chart, mse};
 use crate::report::{
-    ReportError, Results, Table,
+    Results, Table,
     page::{self, SORT_SCRIPT},
     picture::{data_uri, figure, read},
     table::{number, scene_heading},
 };
 use crate::{
-    Row,
+    EvalError, Row,
     bench::Bench,
     compare::{EXACT, image_name},
     front::{self, Mean, Point},
@@ -23,16 +23,12 @@ const PICTURE_WIDTH: u32 = 256;
 const MAGNIFIED: u16 = 8;
 
 /// The whole page. In the folder, `images` holds `<scene>-<method>.png`.
-pub(super) fn page(results: &Results<Bench>, folder: &Path) -> Result<String, ReportError> {
+pub(super) fn page(results: &Results<Bench>, folder: &Path) -> Result<String, EvalError> {
     let images = &folder.join("images");
     let rows = &Rows::new(&results.measured.rows);
     let scenes = rows.scenes();
     let all = front::points(rows, Mean::Geometric);
     let by_size = front::points(rows, Mean::Arithmetic);
-    let by_scene = scenes
-        .iter()
-        .map(|scene| of_scene(&results.measured, scene, images))
-        .collect::<Result<Vec<Markup>, _>>()?;
     let views = rows.of_method(EXACT).0.len();
     let body = html! {
         p {
@@ -56,7 +52,7 @@ pub(super) fn page(results: &Results<Bench>, folder: &Path) -> Result<String, Re
         p.note { "Times / hardware blending. Where few fragments overlap, exact methods cost little; where smoke fills the frame, much." }
         (results.times_by_scene().html("sortable", |_| false))
         h2 { "Scene by scene" }
-        @for scene in &by_scene { (scene) }
+        @for scene in &scenes { (of_scene(&results.measured, scene, images)?) }
         h2 { "Time by pass" }
         p.note { "Milliseconds, geometric means over scenes and views." }
         (passes(rows, &all).html("text", |_| false))
@@ -72,15 +68,13 @@ pub(super) fn page(results: &Results<Bench>, folder: &Path) -> Result<String, Re
     };
     let load = |x: Option<f64>| x.map_or_else(|| "unknown".to_owned(), |x| format!("{x:.2}"));
     let [before, after] = results.measured.load.map(load);
-    let more = [(
-        "load before and after".to_owned(),
-        format!("{before}, {after}"),
-    )];
+    let load = format!("{before}, {after}");
+    let more = [("load before and after".to_owned(), load)];
     let title = "Error against time";
     Ok(page::page(results, title, body, &more, Some(SORT_SCRIPT)))
 }
 
-fn of_scene(bench: &Bench, scene: &str, images: &Path) -> Result<Markup, ReportError> {
+fn of_scene(bench: &Bench, scene: &str, images: &Path) -> Result<Markup, EvalError> {
     let own = Rows::new(&bench.rows).of_scene(scene);
     let points = front::points(&own, Mean::Geometric);
     let first = own.of_method(EXACT).0.first().copied();
@@ -180,10 +174,8 @@ fn passes(rows: &Rows<'_>, points: &[Point]) -> Table {
                 }
             }
         }
-        let parts: Vec<String> = times
-            .into_iter()
-            .filter_map(|(name, t)| Some(format!("{name} {:.2}", geometric_mean(t)?)))
-            .collect();
+        let part = |(name, t): (&str, Vec<f64>)| Some(format!("{name} {:.2}", geometric_mean(t)?));
+        let parts: Vec<String> = times.into_iter().filter_map(part).collect();
         vec![p.method.clone(), parts.join(" · ")]
     };
     Table::new(["method", "passes"], points.iter().map(line))
@@ -195,7 +187,7 @@ pub(crate) fn gallery<'a>(
     points: impl IntoIterator<Item = &'a Point>,
     folder: &Path,
     width: u32,
-) -> Result<Markup, ReportError> {
+) -> Result<Markup, EvalError> {
     let file = |method: &str| folder.join(image_name(scene, method));
     let Some(exact) = read(&file(EXACT))? else {
         return Ok(Markup::default());
@@ -209,18 +201,15 @@ pub(crate) fn gallery<'a>(
             continue;
         };
         let map = DynamicImage::ImageRgb8(difference(&exact, &picture.to_rgb8()));
-        let (picture, map) = (
-            data_uri(&path, &picture, width)?,
-            data_uri(&path, &map, width)?,
-        );
+        let [picture, map] = [&picture, &map].map(|image| data_uri(&path, image, width));
         let caption = format!(
             "{}: MSE {:.2e}, {:.2} × blending",
             p.method, p.error, p.time
         );
         all.push(html! {
             div {
-                (figure(&picture, &caption))
-                (figure(&map, &format!("{}: difference × {MAGNIFIED}", p.method)))
+                (figure(&picture?, &caption))
+                (figure(&map?, &format!("{}: difference × {MAGNIFIED}", p.method)))
             }
         });
     }
@@ -259,9 +248,9 @@ mod tests {
             r.time_by_pass = format!("gather={ms} resolve=0.1");
             rows.push(r);
             let gray = (mse * 2.0) as u8;
-            RgbImage::from_pixel(8, 8, image::Rgb([gray; 3]))
-                .save(images.join(image_name("s<1>", method)))
-                .unwrap();
+            let picture = RgbImage::from_pixel(8, 8, image::Rgb([gray; 3]));
+            let path = images.join(image_name("s<1>", method));
+            picture.save(path).unwrap();
         }
         let bench = Bench {
             load: [Some(0.5), None],
