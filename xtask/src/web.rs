@@ -10,9 +10,8 @@ const MOST: u64 = 3_000_000;
 pub fn web() -> Outcome {
     let mut build = command("cargo rustc --package peelnet_view --lib --crate-type cdylib");
     build.args(["--profile", "web", "--target", TARGET]);
-    let libraries = captured(&mut command(&format!(
-        "rustc --print target-libdir --target {TARGET}"
-    )))?;
+    let line = format!("rustc --print target-libdir --target {TARGET}");
+    let libraries = captured(&mut command(&line))?;
     let libraries = String::from_utf8_lossy(&libraries);
     if !fs::read_dir(libraries.trim()).is_ok_and(|mut files| files.next().is_some()) {
         if env::var_os("RUSTC_BOOTSTRAP").is_none() {

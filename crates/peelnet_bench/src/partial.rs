@@ -151,10 +151,8 @@ mod tests {
             resumed.unwrap_err().to_string()
         };
         let e = refused(&json!({"size": [8, 4], "methods": ["a"]}));
-        assert!(
-            e.contains("partial.json") && e.ends_with("settings: size"),
-            "{e}"
-        );
+        assert!(e.contains("partial.json"), "{e}");
+        assert!(e.ends_with("settings: size"), "{e}");
         let file = dir.path().join(Partial::FILE);
         let text = std::fs::read_to_string(&file).unwrap();
         std::fs::write(&file, text.replace("\"mse255\":2.0", "\"mse255\":0.5")).unwrap();

@@ -36,10 +36,8 @@ pub(super) fn run(context: &Context<'_>, args: &InspectArgs) -> Result<(), Failu
         context.say_not_shipped("folder", path);
         dataset(context, path)
     } else if !path.exists() && !ships {
-        let path = shown(path);
-        Err(Failure::failed(format!(
-            "{path}: there is no such file or folder"
-        )))
+        let text = format!("{}: there is no such file or folder", shown(path));
+        Err(Failure::failed(text))
     } else if !path.exists() || ENDINGS.contains(&ending.as_str()) {
         scene(context, path, args.time)
     } else if is_model {

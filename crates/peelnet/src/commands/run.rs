@@ -279,12 +279,10 @@ impl Run<'_> {
     fn settings(&self, share: f64, model: &Model) -> Vec<(String, String)> {
         let names = |held_out: bool| {
             let scenes = self.scenes.iter().filter(|s| s.held_out == held_out);
-            let names: Vec<&str> = scenes.map(|s| s.name.as_str()).collect();
-            let names = if names.is_empty() {
-                vec!["none"]
-            } else {
-                names
-            };
+            let mut names: Vec<&str> = scenes.map(|s| s.name.as_str()).collect();
+            if names.is_empty() {
+                names.push("none");
+            }
             names.join(", ")
         };
         let sizes = if self.args.full { "full" } else { "quick" };

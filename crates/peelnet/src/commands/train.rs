@@ -204,9 +204,7 @@ pub(super) fn text(out: &Path, outcome: &Outcome) -> String {
     t.push_str(&format!(", {:.1} s, {rate} rows/s", seconds(outcome)));
     for (scene, error) in &meta.held_out {
         let scene = printable(scene);
-        t.push_str(&format!(
-            "\nheld-out scene {scene}: mean error of T {error:.4}"
-        ));
+        t += &format!("\nheld-out scene {scene}: mean error of T {error:.4}");
     }
     t
 }

@@ -200,10 +200,8 @@ mod tests {
         let view = View::new("s", warp, 64, lists);
         let of = |depths: &[f64]| Range::from_depths(depths.iter().map(|&z| warp.apply(z)));
         let found = of_last(&view, &before, 8, 8);
-        assert_eq!(
-            found,
-            [of(&[3.0, 5.0]), of(&[5.0]), Range::WHOLE, of(&[3.0, 5.0])]
-        );
+        let both = of(&[3.0, 5.0]);
+        assert_eq!(found, [both, of(&[5.0]), Range::WHOLE, both]);
     }
 
     /// Where all absorbance lies at one depth, that depth is the middle of half of the scale.
@@ -220,11 +218,8 @@ mod tests {
             (1.0 / 128.0, 0.5 + 1.0 / 256.0),
             (1.0, 1.0),
         ] {
-            let found = quantiles.apply(zeta);
-            assert!(
-                (found - expected).abs() < 1e-9,
-                "{zeta}: {found}, not {expected}"
-            );
+            let off = quantiles.apply(zeta) - expected;
+            assert!(off.abs() < 1e-9, "{zeta} is off by {off}");
         }
     }
 }

@@ -57,14 +57,10 @@ fn scores_are_geometric_means_and_the_worst_scene() {
     let kbuffer = of([1e-3, 4e-3], [None; 2]);
     let score = score(&views, &own, &moments, &kbuffer);
     let close = |a: Option<f64>, b: f64| (a.unwrap() - b).abs() < 1e-12;
-    assert!(
-        close(score.to_moments, 0.5) && close(score.to_kbuffer, 0.5),
-        "{score:?}"
-    );
+    assert!(close(score.to_moments, 0.5), "{score:?}");
+    assert!(close(score.to_kbuffer, 0.5), "{score:?}");
     assert_eq!(score.worst_scene.as_deref(), Some("b"));
-    assert!(
-        close(score.worst, 1.0) && close(score.contour_pairs, 0.5),
-        "{score:?}"
-    );
+    assert!(close(score.worst, 1.0), "{score:?}");
+    assert!(close(score.contour_pairs, 0.5), "{score:?}");
     assert!(close(score.flicker[0], 0.5) && score.flicker[1].is_none());
 }

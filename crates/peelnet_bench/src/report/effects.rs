@@ -125,12 +125,8 @@ impl Results<Effects> {
     }
 
     fn settings(&self) -> String {
-        let m = &self.measured;
-        let [width, height] = m.size;
-        format!(
-            "{width}x{height}, medians of {} frames drawn in turn",
-            m.frames
-        )
+        let ([width, height], frames) = (self.measured.size, self.measured.frames);
+        format!("{width}x{height}, medians of {frames} frames drawn in turn")
     }
 
     fn markdown(&self) -> String {

@@ -23,10 +23,8 @@ pub(crate) fn data_uri(
     let mut png = Cursor::new(Vec::new());
     let written = shown.to_rgb8().write_to(&mut png, ImageFormat::Png);
     written.map_err(EvalError::io(path, "shrink the picture"))?;
-    Ok(format!(
-        "data:image/png;base64,{}",
-        STANDARD.encode(png.get_ref())
-    ))
+    let text = STANDARD.encode(png.get_ref());
+    Ok(format!("data:image/png;base64,{text}"))
 }
 
 pub(crate) fn figure(uri: &str, caption: &str) -> Markup {

@@ -156,10 +156,8 @@ mod tests {
         let matrix = results.matrix();
         assert_eq!(matrix.headings, ["method", "deep", "far"]);
         assert_eq!(matrix.rows, [["a", "d1", "·"], ["b", "d1", "F1"]]);
-        assert_eq!(
-            results.known_failures().rows,
-            [["hull", "a, b", "deep", "rounds", "2.0"]]
-        );
+        let known = results.known_failures().rows;
+        assert_eq!(known, [["hull", "a, b", "deep", "rounds", "2.0"]]);
         let dir = tempfile::tempdir().unwrap();
         let page = written(dir.path(), &results);
         assert!(page.contains("pixel &lt;3&gt;") && !page.contains("pixel <3>"));

@@ -61,9 +61,8 @@ pub(super) fn on_hostile_inputs(
     ];
     let mut hostile = || {
         loop {
-            let bits = f32::from_bits(
-                (random.unit() * 16_777_216.0) as u32 | (random.below(256) as u32) << 24,
-            );
+            let bits = (random.unit() * 16_777_216.0) as u32 | (random.below(256) as u32) << 24;
+            let bits = f32::from_bits(bits);
             if random.below(4) == 0 {
                 return extremes[random.below(extremes.len())];
             }

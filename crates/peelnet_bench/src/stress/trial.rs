@@ -97,15 +97,11 @@ impl Kind {
         let brightest = own.fold(0.0f64, |m, (&c, c0)| {
             m.max(c - transmittance * f64::from(c0))
         });
-        let covered = transmittance < 1.0;
+        let mean = (transmittance < 1.0).then(|| brightest / (1.0 - transmittance));
         Self {
             exact,
             transmittance,
-            mean: if covered {
-                brightest / (1.0 - transmittance)
-            } else {
-                0.0
-            },
+            mean: mean.unwrap_or_default(),
             uncertainty: 0.0,
             absorbance: fragments.iter().map(|f| absorbance(f.alpha)).sum(),
             name,
