@@ -50,6 +50,14 @@ impl Bytes {
     pub fn is_one(&self) -> bool {
         self.mean == self.most
     }
+
+    /// One number, or mean, median and most over the views.
+    pub fn text(&self) -> String {
+        if self.is_one() {
+            return format!("{:.0}", self.most);
+        }
+        format!("{:.0}, {:.0}, {:.0}", self.mean, self.median, self.most)
+    }
 }
 
 /// Some rows. Their means are `None` where a row lacks the value, and of no row.

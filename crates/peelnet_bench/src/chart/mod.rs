@@ -13,7 +13,7 @@
 mod bubbles;
 mod lines;
 
-pub use bubbles::{Bubble, bubble_chart};
+pub use bubbles::bubble_chart;
 pub use lines::{Line, Scale, line_chart};
 
 use maud::{Markup, html};

@@ -172,12 +172,11 @@ fn rows(
         let method = &subjects[i].method;
         let failure = KnownFailure::find(method, case.id, property, adapter);
         let (result, reason) = match (finding.holds(), failure) {
-            (true, None) => (Outcome::Pass, None),
-            (true, Some(failure)) if strict => (
-                Outcome::Fail,
-                Some(format!("holds, but is a known failure: {}", failure.reason)),
-            ),
-            (true, Some(_)) => (Outcome::Pass, None),
+            (true, Some(failure)) if strict => {
+                let reason = format!("holds, but is a known failure: {}", failure.reason);
+                (Outcome::Fail, Some(reason))
+            }
+            (true, _) => (Outcome::Pass, None),
             (false, Some(failure)) => (Outcome::Declared, Some(failure.reason.to_owned())),
             (false, None) => (Outcome::Fail, None),
         };

@@ -1,6 +1,7 @@
 //! The page of a bench: charts, tables that sort, pictures with difference maps.
 
-use super::{ERROR_TO_FRONT, TIME_TO_FRONT, TO_BASE, TO_MOMENTS, TO_WEIGHTED, bytes, chart, mse};
+use super::{ERROR_TO_FRONT, TIME_TO_FRONT, TO_BASE, TO_MOMENTS, TO_WEIGHTED, mse};
+use crate::chart::bubble_chart;
 use crate::report::{
     Results, Table,
     page::{self, SORT_SCRIPT},
@@ -39,7 +40,7 @@ pub(super) fn page(results: &Results<Bench>, folder: &Path) -> Result<String, Ev
             "Geometric means over scenes and views. Each bubble is a method with its settings: point at it for its figures; its area grows \
              with its bytes per pixel. No method is both faster and more accurate than one on the front (orange)."
         }
-        (page::chart("chart", &chart(&all)))
+        (page::chart("chart", &bubble_chart(&all)))
         (points_table(rows, &all))
         (untimed(rows))
         h2 { "All scenes, arithmetic means" }
@@ -47,7 +48,7 @@ pub(super) fn page(results: &Results<Bench>, folder: &Path) -> Result<String, Ev
             "Arithmetic means of the errors: a method that is nearly exact on many scenes and wrong on one ranks lower here than by \
              geometric means."
         }
-        (page::chart("chart", &chart(&by_size)))
+        (page::chart("chart", &bubble_chart(&by_size)))
         h2 { "Time scene by scene" }
         p.note { "Times / hardware blending. Where few fragments overlap, exact methods cost little; where smoke fills the frame, much." }
         (results.times_by_scene().html("sortable", |_| false))
@@ -92,7 +93,7 @@ fn of_scene(bench: &Bench, scene: &str, images: &Path) -> Result<Markup, EvalErr
                 "View 0: " (count(fragments)) " fragments, at most " (count(most.map(u64::from))) " in a pixel, "
                 (format!("{mean_depth:.2}")) " per pixel on average."
             }
-            (page::chart("chart", &chart(&points)))
+            (page::chart("chart", &bubble_chart(&points)))
             (points_table(&own, &points))
             (gallery(scene, shown, images, PICTURE_WIDTH)?)
         }
@@ -123,7 +124,7 @@ pub(crate) fn points_table(rows: &Rows<'_>, points: &[Point]) -> Markup {
             ("T error", &|p| mean(p, |r| r.transmittance_error, 4)),
             ("contour pairs", &|p| mean(p, |r| r.contour_pairs, 5)),
             ("passes", &|p| most_passes(rows, &p.method)),
-            ("bytes a pixel", &|p| bytes(&p.bytes)),
+            ("bytes a pixel", &|p| p.bytes.text()),
             (TIME_TO_FRONT, &|p| number(Some(p.time_at_equal_error), 2)),
             (ERROR_TO_FRONT, &|p| number(Some(p.error_at_equal_time), 2)),
         ],

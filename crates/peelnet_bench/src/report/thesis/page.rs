@@ -1,4 +1,5 @@
 use super::{EXPLANATION, Stage, ThesisRun, mean};
+use crate::chart::bubble_chart;
 use crate::report::{
     Results, Table, bench, page,
     page::SORT_SCRIPT,
@@ -76,7 +77,7 @@ fn showcase(rows: &[Row], images: &Path) -> Result<Markup, EvalError> {
         (pictures)
         h3 { "Error against time" }
         p.note { "The lower, the more accurate; the further left, the faster. Point at a bubble for its figures." }
-        (page::chart("chart", &bench::chart(&points)))
+        (page::chart("chart", &bubble_chart(&points)))
         (bench::page::points_table(&rows, &points))
     })
 }
