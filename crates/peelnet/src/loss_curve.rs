@@ -16,8 +16,10 @@ pub fn curve_kind(path: &Path) -> Result<Kind, Failure> {
     form(path).map(|(kind, _)| kind)
 }
 
-/// What a curve of this ending is known by, and its text.
-fn form(path: &Path) -> Result<(Kind, fn(&[EpochReport]) -> String), Failure> {
+/// What a curve is known by, and its text.
+type Form = (Kind, fn(&[EpochReport]) -> String);
+
+fn form(path: &Path) -> Result<Form, Failure> {
     let csv_kind = Kind {
         name: "a loss curve (CSV)",
         is: |head| head.starts_with(HEADINGS.as_bytes()),
