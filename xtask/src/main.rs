@@ -136,9 +136,8 @@ fn program_in_root(program: impl AsRef<OsStr>, arguments: &str) -> Command {
     if env::var_os("XDG_RUNTIME_DIR").is_none() {
         command.env("XDG_RUNTIME_DIR", env::temp_dir());
     }
-    command
-        .args(arguments.split_whitespace())
-        .current_dir(root());
+    command.args(arguments.split_whitespace());
+    command.current_dir(root());
     command
 }
 
@@ -154,9 +153,9 @@ fn start(command: &mut Command) -> Outcome {
 /// Runs a command and returns what it prints to stdout, unless that is shown; what it prints to stderr is.
 fn captured(command: &mut Command) -> Result<Vec<u8>, String> {
     let mut line = command.get_program().to_string_lossy().into_owned();
-    command
-        .get_args()
-        .for_each(|arg| line += &format!(" {}", arg.to_string_lossy()));
+    for argument in command.get_args() {
+        line += &format!(" {}", argument.to_string_lossy());
+    }
     match command.stderr(Stdio::inherit()).output() {
         Ok(output) if output.status.success() => Ok(output.stdout),
         Ok(output) => Err(format!("{line}: {}", output.status)),
@@ -164,7 +163,6 @@ fn captured(command: &mut Command) -> Result<Vec<u8>, String> {
     }
 }
 
-/// Whether a program is there and answers.
 fn answers(line: &str) -> bool {
     let output = command(line).output();
     output.is_ok_and(|o| o.status.success())

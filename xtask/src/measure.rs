@@ -2,7 +2,7 @@
 
 use crate::{
     Outcome,
-    product::{Program, held_out_scenes, scene_file},
+    product::{Program, scene_file, scene_files},
     root, run,
 };
 use std::{fs, path::Path, time::Instant};
@@ -41,8 +41,10 @@ fn steps() -> Vec<[&'static str; 3]> {
 /// A step's command with scenes and methods in their places.
 fn filled(line: &str) -> Result<String, String> {
     let extract = "extract data/scenes/sixteen-050.toml --size 1024x768 --json";
+    // Those that no network learns from.
+    let held_out = scene_files(|name| name.ends_with("-held"))?;
     Ok(line
-        .replace("<held-out>", &held_out_scenes()?.join(" "))
+        .replace("<held-out>", &held_out.join(" "))
         .replace("<validation>", &VALIDATION_SCENES.map(scene_file).join(" "))
         .replace("<path>", PATH_METHODS)
         .replace("<extract>", extract))

@@ -31,7 +31,6 @@ impl Program {
         start(&mut self.command(line))
     }
 
-    /// Runs a command whose stdout is kept.
     pub fn captured(&self, line: &str) -> Result<Vec<u8>, String> {
         captured(&mut self.command(line))
     }
@@ -100,12 +99,10 @@ pub fn train_models() -> Outcome {
 
 /// Trains a recipe in `out/models` and puts the model, its texts and its figures into `models`.
 fn train(program: &Program, recipe: &str, budget: &str) -> Outcome {
-    let (trained, shipped) = (
-        format!("out/models/{recipe}/model.safetensors"),
-        format!("models/{recipe}"),
-    );
+    let (folder, shipped) = (format!("out/models/{recipe}"), format!("models/{recipe}"));
+    let trained = format!("{folder}/model.safetensors");
     let io = |e: std::io::Error| format!("{shipped}: {e}");
-    for folder in [&format!("out/models/{recipe}"), &shipped] {
+    for folder in [&folder, &shipped] {
         fs::create_dir_all(root().join(folder)).map_err(io)?;
     }
     // All scenes train: what the networks do on others, the scenes that are held out say.
@@ -153,25 +150,20 @@ pub fn designs() -> Outcome {
     judge(&others, &across, peeled, "designs/across")
 }
 
-/// The shipped scenes that no network learns from.
-pub fn held_out_scenes() -> Result<Vec<String>, String> {
-    scene_files(|name| name.ends_with("-held"))
-}
-
 pub fn scene_file(name: &str) -> String {
     format!("data/scenes/{name}.toml")
 }
 
 /// The shipped scenes of some names, relative to the root, in the order of their names.
-fn scene_files(is_asked: impl Fn(&str) -> bool) -> Result<Vec<String>, String> {
+pub fn scene_files(is_asked: impl Fn(&str) -> bool) -> Result<Vec<String>, String> {
     let folder = root().join("data/scenes");
     let entries = fs::read_dir(&folder).map_err(|e| format!("{}: {e}", folder.display()))?;
-    let mut files: Vec<String> = entries
-        .flatten()
-        .filter_map(|e| Some(e.file_name().to_str()?.strip_suffix(".toml")?.to_owned()))
-        .filter(|name| is_asked(name))
-        .map(|name| scene_file(&name))
-        .collect();
+    let file = |entry: fs::DirEntry| {
+        let file = entry.file_name();
+        let name = file.to_str()?.strip_suffix(".toml")?;
+        is_asked(name).then(|| scene_file(name))
+    };
+    let mut files: Vec<String> = entries.flatten().filter_map(file).collect();
     files.sort();
     Ok(files)
 }

@@ -1,7 +1,7 @@
 //! What a fresh machine lacks: a Vulkan driver, a browser, subcommands of cargo.
 
 use crate::{Outcome, answers, captured, command, run};
-use std::{env, path::Path};
+use std::{env, path::Path, process::Output};
 
 pub fn ensure_subcommand(name: &str) -> Outcome {
     ensure(&format!("cargo {name} --version"), &format!("cargo-{name}"))
@@ -59,10 +59,9 @@ pub fn apt_install(packages: &str) -> Outcome {
 /// Makes sure that a browser is there: installs Chromium through apt where none is and apt exists, saying so. Elsewhere the test itself says
 /// what it needs.
 pub fn ensure_browser() -> Outcome {
-    let found = ["chromium", "chromium-browser", "google-chrome", "chrome"]
-        .iter()
-        .any(|name| answers(&format!("{name} --version")));
-    if found || !Path::new("/usr/bin/apt-get").exists() {
+    let names = ["chromium", "chromium-browser", "google-chrome", "chrome"];
+    let mut versions = names.iter().map(|name| format!("{name} --version"));
+    if versions.any(|line| answers(&line)) || !Path::new("/usr/bin/apt-get").exists() {
         return Ok(());
     }
     println!("No Chromium is installed.");
@@ -71,21 +70,16 @@ pub fn ensure_browser() -> Outcome {
 
 /// Whether the Vulkan loader and at least one driver's manifest are in the places that the loader searches.
 fn driver_exists() -> bool {
-    let named = ["VK_DRIVER_FILES", "VK_ICD_FILENAMES"]
-        .into_iter()
-        .filter_map(env::var_os)
-        .any(|list| env::split_paths(&list).any(|file| file.exists()));
+    let lists = ["VK_DRIVER_FILES", "VK_ICD_FILENAMES"].map(env::var_os);
+    let exists = |list| env::split_paths(list).any(|file| file.exists());
+    let named = lists.iter().flatten().any(exists);
     let folders = ["/usr/share", "/etc", "/usr/local/share"];
-    let manifest = folders
-        .iter()
-        .filter_map(|d| std::fs::read_dir(format!("{d}/vulkan/icd.d")).ok())
-        .flatten()
-        .flatten()
-        .any(|f| f.path().extension().is_some_and(|e| e == "json"));
-    let loader = ["ldconfig -p", "/sbin/ldconfig -p"]
-        .iter()
-        .find_map(|line| command(line).output().ok())
-        // Where there is no ldconfig the manifests must do.
-        .is_none_or(|o| String::from_utf8_lossy(&o.stdout).contains("libvulkan.so.1"));
-    (named || manifest) && loader
+    let folders = folders.map(|d| std::fs::read_dir(format!("{d}/vulkan/icd.d")));
+    let mut files = folders.into_iter().flatten().flatten().flatten();
+    let manifest = files.any(|f| f.path().extension().is_some_and(|e| e == "json"));
+    let mut lines = ["ldconfig -p", "/sbin/ldconfig -p"].into_iter();
+    let output = lines.find_map(|line| command(line).output().ok());
+    let has = |o: Output| String::from_utf8_lossy(&o.stdout).contains("libvulkan.so.1");
+    // Where there is no ldconfig the manifests must do.
+    (named || manifest) && output.is_none_or(has)
 }

@@ -7,13 +7,11 @@ pub const TARGET: &str = "wasm32-unknown-unknown";
 /// What a page is to weigh on the line at most, bytes.
 const MOST: u64 = 3_000_000;
 
-/// Builds the page into out/web.
 pub fn web() -> Outcome {
     let mut build = command("cargo rustc --package peelnet_view --lib --crate-type cdylib");
     build.args(["--profile", "web", "--target", TARGET]);
-    let libraries = captured(&mut command(&format!(
-        "rustc --print target-libdir --target {TARGET}"
-    )))?;
+    let line = format!("rustc --print target-libdir --target {TARGET}");
+    let libraries = captured(&mut command(&line))?;
     let libraries = String::from_utf8_lossy(&libraries);
     if !fs::read_dir(libraries.trim()).is_ok_and(|mut files| files.next().is_some()) {
         if env::var_os("RUSTC_BOOTSTRAP").is_none() {
@@ -38,7 +36,6 @@ pub fn web() -> Outcome {
     sizes(&folder)
 }
 
-/// Prints what each file weighs, and on the line.
 fn sizes(folder: &Path) -> Outcome {
     let entries = fs::read_dir(folder).map_err(|e| format!("{}: {e}", folder.display()))?;
     let mut paths: Vec<_> = entries.flatten().map(|e| e.path()).collect();

@@ -38,10 +38,7 @@ impl Console {
         STDOUT_IS_A_FILE.store(true, Ordering::Relaxed);
     }
 
-    /// The command's result on stdout: JSON with `--json`, else text.
-    ///
-    /// # Errors
-    /// If stdout cannot be written. A reader that has closed its pipe has read enough, which is no error.
+    /// The command's result on stdout: JSON with `--json`, else text. A reader that has closed its pipe has read enough, which is no error.
     pub fn result(
         self,
         text: impl FnOnce() -> String,

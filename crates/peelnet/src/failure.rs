@@ -166,10 +166,8 @@ mod tests {
         let failure = Failure::from(error);
         assert!(!failure.is_wrong_value && failure.is_gpu_lost);
         let text = failure.to_string();
-        assert!(
-            text.starts_with("scene 'cups', method 'mboit4': "),
-            "{text}"
-        );
+        let place = "scene 'cups', method 'mboit4': ";
+        assert!(text.starts_with(place), "{text}");
         assert_eq!(text.matches("gone").count(), 1, "{text}");
         assert!(text.ends_with(" (--adapter software)"), "{text}");
         let failure = Failure::from(PeelError::Setting {

@@ -2,7 +2,7 @@
 
 use crate::{
     Failure, check_model_place,
-    loss_curve::{CurveFormat, write_curve},
+    loss_curve::{curve_kind, write_curve},
     save_model,
 };
 use peelnet_core::files::{Outputs, STDOUT, Unfinished, is_remote, shown};
@@ -119,7 +119,7 @@ impl ModelPlace {
             )));
         }
         for path in loss_curves {
-            outputs.file(curve_label, path, CurveFormat::from_ending(path)?.kind())?;
+            outputs.file(curve_label, path, curve_kind(path)?)?;
         }
         let scratch = if is_file {
             None

@@ -6,49 +6,35 @@ use peelnet_core::files::{Kind, shown, write_whole};
 use peelnet_train::EpochReport;
 use std::path::Path;
 
-const HEADINGS: [&str; 5] = [
-    "epoch",
-    "train_loss",
-    "held_out_loss",
-    "seconds",
-    "rows_per_s",
-];
+const HEADINGS: &str = "epoch,train_loss,held_out_loss,seconds,rows_per_s";
 
-/// The forms of a loss curve, chosen by the file's ending.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum CurveFormat {
-    /// Columns epoch, train_loss, held_out_loss, seconds, rows_per_s.
-    Csv,
-    /// Both losses over the epochs, logarithmic.
-    Svg,
+/// By what a loss curve is known, whose ending chooses its form: .csv a table, .svg a picture of both losses over the epochs.
+///
+/// # Errors
+/// Any other ending.
+pub fn curve_kind(path: &Path) -> Result<Kind, Failure> {
+    form(path).map(|(kind, _)| kind)
 }
 
-impl CurveFormat {
-    /// # Errors
-    /// Any other ending.
-    pub fn from_ending(path: &Path) -> Result<Self, Failure> {
-        match path.extension().and_then(|e| e.to_str()) {
-            Some(e) if e.eq_ignore_ascii_case("csv") => Ok(Self::Csv),
-            Some(e) if e.eq_ignore_ascii_case("svg") => Ok(Self::Svg),
-            _ => Err(Failure::wrong(format!(
-                "{}: a loss curve ends in .csv or .svg",
-                shown(path)
-            ))),
-        }
-    }
+/// What a curve is known by, and its text.
+type Form = (Kind, fn(&[EpochReport]) -> String);
 
-    /// By what a loss curve of this form is known.
-    pub const fn kind(self) -> Kind {
-        match self {
-            Self::Csv => Kind {
-                name: "a loss curve (CSV)",
-                is: |head| head.starts_with(HEADINGS.join(",").as_bytes()),
-            },
-            Self::Svg => Kind {
-                name: "a loss curve (SVG)",
-                is: Svg::is_ours,
-            },
-        }
+fn form(path: &Path) -> Result<Form, Failure> {
+    let csv_kind = Kind {
+        name: "a loss curve (CSV)",
+        is: |head| head.starts_with(HEADINGS.as_bytes()),
+    };
+    let svg_kind = Kind {
+        name: "a loss curve (SVG)",
+        is: Svg::is_ours,
+    };
+    match path.extension().and_then(|e| e.to_str()) {
+        Some(e) if e.eq_ignore_ascii_case("csv") => Ok((csv_kind, csv)),
+        Some(e) if e.eq_ignore_ascii_case("svg") => Ok((svg_kind, |h| curve_chart(h).on_white())),
+        _ => Err(Failure::wrong(format!(
+            "{}: a loss curve ends in .csv or .svg",
+            shown(path)
+        ))),
     }
 }
 
@@ -57,15 +43,12 @@ impl CurveFormat {
 /// # Errors
 /// An unknown ending, or the file cannot be written.
 pub fn write_curve(path: &Path, history: &[EpochReport]) -> Result<(), Failure> {
-    let text = match CurveFormat::from_ending(path)? {
-        CurveFormat::Csv => csv(history),
-        CurveFormat::Svg => curve_chart(history).on_white(),
-    };
+    let text = form(path)?.1(history);
     write_whole(path, text.as_bytes()).map_err(|e| Failure::failed(format!("{}: {e}", shown(path))))
 }
 
 fn csv(history: &[EpochReport]) -> String {
-    let mut table = HEADINGS.join(",") + "\n";
+    let mut table = format!("{HEADINGS}\n");
     for row in history {
         let held_out = row.held_out_loss.map_or(String::new(), |l| l.to_string());
         table += &format!(
@@ -78,11 +61,9 @@ fn csv(history: &[EpochReport]) -> String {
 
 /// Both losses over the epochs, on a logarithmic axis.
 pub fn curve_chart(history: &[EpochReport]) -> Svg {
-    let positive = history
-        .iter()
-        .flat_map(|row| [Some(row.train_loss), row.held_out_loss])
-        .flatten()
-        .filter(|loss| *loss > 0.0);
+    let rows = history.iter();
+    let losses = rows.flat_map(|row| [Some(row.train_loss), row.held_out_loss]);
+    let positive = losses.flatten().filter(|loss| *loss > 0.0);
     // A logarithmic axis has no zero: a loss of zero is drawn below all others.
     let floor = positive.reduce(f64::min).map_or(1e-9, |low| low / 1.2);
     let line = |name: &str, loss: fn(&EpochReport) -> Option<f64>| {

@@ -16,11 +16,8 @@ impl Bar {
             ProgressStyle::with_template("{prefix:>8} [{bar:30}] {pos}/{len} · {msg} · {eta} left")
                 .expect("the template is constant")
                 .progress_chars("=> ");
-        Self(
-            ProgressBar::with_draw_target(Some(total), target(console))
-                .with_style(style)
-                .with_prefix(name),
-        )
+        let bar = ProgressBar::with_draw_target(Some(total), target(console));
+        Self(bar.with_style(style).with_prefix(name))
     }
 
     /// A sign of life beside what is being done, where nobody knows how long it takes.

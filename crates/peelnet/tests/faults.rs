@@ -155,10 +155,8 @@ fn resuming_what_has_finished_says_so_and_keeps_it() {
     let train = "train d --recipe thesis --out m-0.5 --epochs 2";
     let bench = "bench s.toml --out o --size 32x24 --frames 1 --methods wboit-eq9";
     let text = folder.says(&format!("{train} --resume"), 1);
-    assert!(
-        text.contains("m-0.5.checkpoint/state.safetensors"),
-        "{text}"
-    );
+    let state = "m-0.5.checkpoint/state.safetensors";
+    assert!(text.contains(state), "{text}");
     folder.prints(train);
     folder.prints(bench);
     for (line, code, words) in [

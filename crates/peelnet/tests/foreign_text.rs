@@ -7,7 +7,7 @@ use std::process::Output;
 const HOSTILE: &str = "x\u{1b}[2J\u{9b}31m\r\u{7}\u{202e}\u{85}y";
 
 /// Neither stream holds what acts on a terminal. Returns whether the name is there in its escaped form.
-fn assert_plain(output: &Output, what: &str) -> bool {
+pub fn assert_plain(output: &Output, what: &str) -> bool {
     let mut escaped = false;
     for stream in [&output.stdout, &output.stderr] {
         let text = String::from_utf8_lossy(stream);

@@ -38,19 +38,13 @@ pub fn trained_on<'a>(
 /// }
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-///
-/// # Errors
-/// If a method cannot draw, or a picture cannot be written.
 pub fn bench(gpu: &Gpu, scenes: &[Scene], plan: &Plan<'_>) -> Result<Vec<Row>, EvalError> {
     let partial = Partial::new(None, serde_json::Value::Null);
     let stop = AtomicBool::new(false);
     Ok(bench_watched(gpu, scenes, plan, partial, &stop, &mut |_| {})?.rows)
 }
 
-/// Rows and pictures name their scene.
-///
-/// # Errors
-/// Two scenes of one name.
+/// Refuses two scenes of one name: rows and pictures name their scene.
 pub(crate) fn check_names(scenes: &[Scene]) -> Result<(), EvalError> {
     for (i, scene) in scenes.iter().enumerate() {
         if let Some(other) = scenes[..i].iter().find(|s| s.name == scene.name) {
@@ -65,9 +59,6 @@ pub(crate) fn check_names(scenes: &[Scene]) -> Result<(), EvalError> {
 }
 
 /// As [`bench()`], but continues what `partial` holds, adds each finished view to it, reports progress, and can be stopped.
-///
-/// # Errors
-/// As [`bench()`]; [`EvalError::Interrupted`] once `stop` is set.
 pub fn bench_watched(
     gpu: &Gpu,
     scenes: &[Scene],
@@ -78,10 +69,8 @@ pub fn bench_watched(
 ) -> Result<Bench, EvalError> {
     check_names(scenes)?;
     let load_before = load();
-    let views: usize = scenes
-        .iter()
-        .map(|s| plan.views_of(s).saturating_sub(partial.done(&s.name).len()))
-        .sum();
+    let left = |s: &Scene| plan.views_of(s).saturating_sub(partial.done(&s.name).len());
+    let views: usize = scenes.iter().map(left).sum();
     // The exact method is drawn whether it is in the plan or not.
     let exact = usize::from(!plan.methods.contains(&exact_method()));
     // The compared frame, and where any are timed one more to warm up.

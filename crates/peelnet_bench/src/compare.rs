@@ -3,10 +3,10 @@
 use crate::{
     EvalError, Partial, Row,
     contours::Pairs,
+    json_hash,
     metrics::{differences, error_image},
     perceptual::Displayed,
     rows::each_once,
-    settings_hash,
     stage::{Ready, Stage, Watch, exact_method, in_turn, percentile},
     transmittance::Peeled,
 };
@@ -89,7 +89,7 @@ pub fn image_name(scene: &str, method: &str) -> String {
             }
         }
         if plain.len() > MAX_NAME {
-            let hash = settings_hash(&text.into());
+            let hash = json_hash(&text);
             // No escape begins with h.
             plain = format!("{}_h{}", &plain[..MAX_NAME - 34], &hash[..32]);
         }

@@ -64,10 +64,8 @@ impl Pairs {
     /// The number of contour pairs of an error image of the same size.
     pub fn contours(&self, errors: &[[f32; 3]]) -> u64 {
         let jumps = |a: usize, b: usize| {
-            let channels = errors[a].iter().zip(&errors[b]);
-            channels
-                .map(|(a, b)| f64::from(*a) - f64::from(*b))
-                .any(|difference| difference.abs() > LIMIT)
+            let mut channels = errors[a].iter().zip(&errors[b]);
+            channels.any(|(a, b)| (f64::from(*a) - f64::from(*b)).abs() > LIMIT)
         };
         let of_pixel = |(i, begins): (usize, &u8)| {
             let right = begins & RIGHT != 0 && jumps(i, i + 1);

@@ -85,6 +85,7 @@ impl Entry {
 impl Row {
     pub fn new(entry: &Entry, model: &Model, network: Score, middle: Score) -> Self {
         let (design, recipe) = (&entry.design, entry.recipe);
+        let inputs = recipe.input_names().into_iter();
         Self {
             design: entry.name.clone(),
             slabs: design.slabs.to_vec(),
@@ -94,11 +95,7 @@ impl Row {
             trained_apart: recipe.inputs.known_apart(),
             // The last frame's range is kept while this frame's is found.
             bytes: design.bytes() + if entry.source == Source::Last { 2 } else { 0 },
-            inputs: recipe
-                .input_names()
-                .into_iter()
-                .map(str::to_owned)
-                .collect(),
+            inputs: inputs.map(str::to_owned).collect(),
             topology: model.mlp.topology(),
             parameters: model.mlp.parameters() as u64,
             loss: recipe.loss.unwrap_or_default(),

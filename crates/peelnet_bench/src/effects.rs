@@ -29,9 +29,6 @@ pub struct Settings {
 pub const FILLED: [f64; 3] = [0.5, 0.75, 1.0];
 
 /// Times an effect of a scene: the frame as it is and without the effect, drawn in turn. Pictures of both go to the folder.
-///
-/// # Errors
-/// What drawing meets.
 pub fn cost(
     gpu: &Gpu,
     scene: &Scene,
@@ -40,8 +37,10 @@ pub fn cost(
     folder: Option<&Path>,
 ) -> Result<Cost, EvalError> {
     let plain = scene.without(effect);
-    let name = format!("{} ({effect})", settings.method);
-    let ready = |stage: &Stage<'_>| settings.ready(stage, &name);
+    let (method, size) = (&settings.method, settings.size);
+    let name = format!("{method} ({effect})");
+    let ready =
+        |stage: &Stage<'_>| stage.prepare(&name, |r| r.method(method, MethodOptions::sized(size)));
     let mut stages = stages(gpu, &[scene, &plain], ready)?;
     let (mut bytes, mut passes) = ([0.0; 2], [0; 2]);
     for (k, (stage, ready)) in stages.iter_mut().enumerate() {
@@ -75,8 +74,8 @@ fn parts(gpu: &Gpu, scene: &Scene, settings: &Settings) -> Result<Option<Parts>,
         return Ok(None);
     }
     let (opaque, unlit) = (scene.opaque(), scene.unlit());
-    let name = settings.method.to_string();
-    let ready = |stage: &Stage<'_>| settings.ready(stage, &name);
+    let options = || MethodOptions::sized(settings.size);
+    let ready = |stage: &Stage<'_>| stage.ready(&settings.method, options());
     let stages = stages(gpu, &[scene, &opaque, &unlit], ready)?;
     let ms = times(stages, &scene.views[0], settings.frames)?;
     Ok(Some(Parts {
@@ -85,13 +84,6 @@ fn parts(gpu: &Gpu, scene: &Scene, settings: &Settings) -> Result<Option<Parts>,
         ms_shading: ms[1],
         ms_transparency: ms[2],
     }))
-}
-
-impl Settings {
-    fn ready(&self, stage: &Stage<'_>, name: &str) -> Result<Ready, EvalError> {
-        let options = MethodOptions::sized(self.size);
-        stage.prepare(name, |renderer| renderer.method(&self.method, options))
-    }
 }
 
 fn stages<'s>(
@@ -124,7 +116,6 @@ fn times(
     Ok(frames.iter().map(median).collect())
 }
 
-/// The view of layers, ready to be drawn.
 fn view_of(stage: &Stage<'_>, highlight: u32, size: [u32; 2]) -> Result<Ready, EvalError> {
     let view = LayerView {
         highlight,
@@ -203,9 +194,6 @@ fn filling(
 }
 
 /// Measures every effect of every scene, and of those with layers what shading one of them saves.
-///
-/// # Errors
-/// What drawing meets; [`EvalError::Interrupted`] where `stop` was set.
 pub fn measure(
     gpu: &Gpu,
     scenes: &[Scene],
@@ -229,8 +217,8 @@ pub fn measure(
     for scene in scenes {
         for effect in SceneFeatures::new(scene).effects_on() {
             next(scene, effect.to_string())?;
-            let cost = cost(gpu, scene, effect, settings, Some(folder))?;
-            found.costs.push(cost);
+            let cost = cost(gpu, scene, effect, settings, Some(folder));
+            found.costs.push(cost?);
         }
         next(scene, "shading and transparency".to_owned())?;
         found.parts.extend(parts(gpu, scene, settings)?);
@@ -275,9 +263,8 @@ pub fn measure(
 
 pub fn picture_of(folder: &Path, scene: &str, effect: &str, on: bool) -> PathBuf {
     let state = if on { "on" } else { "off" };
-    folder
-        .join("images")
-        .join(image_name(scene, &format!("{effect}-{state}")))
+    let name = image_name(scene, &format!("{effect}-{state}"));
+    folder.join("images").join(name)
 }
 
 #[cfg(test)]

@@ -39,7 +39,10 @@ impl EvalError {
         }
     }
 
-    pub(crate) fn io(path: &Path, action: &str) -> impl FnOnce(std::io::Error) -> Self + use<> {
+    pub(crate) fn io<E>(path: &Path, action: &str) -> impl FnOnce(E) -> Self + use<E>
+    where
+        E: Error + Send + Sync + 'static,
+    {
         Self::at(format!("{}: cannot {action}", path.display()))
     }
 

@@ -41,6 +41,13 @@ impl Point {
         self.error <= EXACT_MSE
     }
 
+    pub fn error_text(&self) -> String {
+        if self.is_exact() {
+            return "exact".to_owned();
+        }
+        format!("MSE {:.2e}", self.error)
+    }
+
     /// Its error without the floor: 0 where it is exact.
     pub fn mse(&self) -> f64 {
         if self.is_exact() { 0.0 } else { self.error }
@@ -86,13 +93,11 @@ pub fn points(rows: &Rows<'_>, kind: Mean) -> Vec<Point> {
 /// method errs half as an exact one does: between the last point with an error and the exact one the front stays at that error.
 fn measure_against_front(points: &mut [Point]) {
     // By time, and so from the largest error to the smallest.
-    let front: Vec<[f64; 2]> = points
-        .iter()
-        .filter(|p| p.on_front)
-        .map(|p| [p.time.ln(), p.error.ln()])
-        .collect();
+    let logarithms = |p: &Point| [p.time.ln(), p.error.ln()];
+    let front = points.iter().filter(|p| p.on_front);
+    let front: Vec<[f64; 2]> = front.map(logarithms).collect();
     for p in points.iter_mut().filter(|p| !p.on_front) {
-        let [time, error] = [p.time.ln(), p.error.ln()];
+        let [time, error] = logarithms(p);
         // No point is faster than the front's first, or more accurate than its last.
         let times = front.iter().map(|&[t, e]| [-e, t]);
         p.time_at_equal_error = (time - interpolated(times, -error)).exp();
@@ -131,7 +136,7 @@ mod tests {
         let mut rows = Vec::new();
         for (k, scene) in ["a", "b"].into_iter().enumerate() {
             for &(method, mse, ms) in of {
-                let mut r = row(scene, 0, method, 0.0);
+                let mut r = row(scene, method, 0.0);
                 // Another factor on every scene leaves ratios of geometric means as they are.
                 r.mse_linear = mse * [1.0, 4.0][k];
                 r.time_ms = Some(ms * [1.0, 9.0][k]);

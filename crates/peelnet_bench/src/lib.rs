@@ -41,13 +41,12 @@ cfg_if::cfg_if! {
         pub mod scaling;
         mod stage;
         pub mod stress;
-        pub mod thesis;
         mod transmittance;
 
         pub use bench::bench;
         pub use error::EvalError;
         pub use machine::load;
-        pub use partial::{Partial, settings_hash};
+        pub use partial::{Partial, json_hash};
         pub use records::{Machine, Row};
         pub use rows::{each_once, geometric_mean};
     }

@@ -11,11 +11,8 @@ impl Machine {
         );
         let cpu = system.cpus().first().map_or("", |cpu| cpu.brand().trim());
         let info = &gpu.info;
-        let build = if cfg!(debug_assertions) {
-            "debug"
-        } else {
-            "release"
-        };
+        let build = ["release", "debug"][usize::from(cfg!(debug_assertions))];
+        let driver = format!("{} {}", info.driver, info.driver_info);
         Self {
             os: std::env::consts::OS.to_owned(),
             arch: std::env::consts::ARCH.to_owned(),
@@ -26,9 +23,7 @@ impl Machine {
             adapter: info.name.clone(),
             adapter_kind: peelnet_render::gpu::adapter::kind_name(info.device_type).to_owned(),
             backend: info.backend.to_string(),
-            driver: format!("{} {}", info.driver, info.driver_info)
-                .trim()
-                .to_owned(),
+            driver: driver.trim().to_owned(),
             peelnet: env!("CARGO_PKG_VERSION").to_owned(),
             build: build.to_owned(),
         }

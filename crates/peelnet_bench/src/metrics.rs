@@ -62,9 +62,8 @@ pub fn error_image(exact: &[[f32; 4]], approximate: &[[f32; 4]]) -> Vec<[f32; 3]
     assert_eq!(exact.len(), approximate.len(), "pixels of the two images");
     let level = |x: f32| 255.0 * encode(if x.is_finite() { x } else { 0.0 });
     let pixels = exact.iter().zip(approximate);
-    pixels
-        .map(|(e, a)| std::array::from_fn(|k| level(a[k]) - level(e[k])))
-        .collect()
+    let errors = pixels.map(|(e, a)| std::array::from_fn(|k| level(a[k]) - level(e[k])));
+    errors.collect()
 }
 
 /// Peak signal-to-noise ratio of a mean squared error on the 0–255 scale, dB; `None` where there is no error.

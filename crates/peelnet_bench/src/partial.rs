@@ -34,13 +34,9 @@ fn json(value: &impl Serialize) -> Vec<u8> {
     serde_json::to_vec(value).expect("rows have string keys only")
 }
 
-fn sha256(value: &impl Serialize) -> String {
+/// Hexadecimal hash of a value's JSON, by which rows are checked and a finished run's settings are known.
+pub fn json_hash(value: &impl Serialize) -> String {
     peelnet_core::files::hex(&Sha256::digest(json(value)))
-}
-
-/// Hexadecimal hash of settings, by which a finished run is known.
-pub fn settings_hash(settings: &serde_json::Value) -> String {
-    sha256(settings)
 }
 
 impl Partial {
@@ -88,11 +84,10 @@ impl Partial {
             let others = settings.filter(|(key, value)| kept.plan.get(key) != Some(*value));
             let names: Vec<&str> = others.map(|(key, _)| key.as_str()).collect();
             let names = names.join(", ");
-            return Err(refuse(format!(
-                "it was measured with other settings: {names}"
-            )));
+            let why = format!("it was measured with other settings: {names}");
+            return Err(refuse(why));
         }
-        if sha256(&kept) != hash {
+        if json_hash(&kept) != hash {
             let why = "it was changed after it was written: its sha256 differs";
             return Err(refuse(why.to_owned()));
         }
@@ -108,16 +103,13 @@ impl Partial {
     }
 
     /// Adds a view's rows, and writes the file again.
-    ///
-    /// # Errors
-    /// If it cannot be written.
     pub fn push(&mut self, rows: Vec<Row>) -> Result<(), EvalError> {
         self.kept.rows.extend(rows);
         let Some(path) = &self.path else {
             return Ok(());
         };
         let stored = Stored {
-            sha256: sha256(&self.kept),
+            sha256: json_hash(&self.kept),
             kept: &self.kept,
         };
         peelnet_core::files::write_whole(path, &json(&stored)).map_err(EvalError::io(path, "write"))
@@ -147,7 +139,10 @@ mod tests {
         let dir = tempfile::tempdir().unwrap();
         let plan = json!({"size": [4, 4], "methods": ["a"]});
         let mut first = Partial::resume(dir.path(), plan.clone()).unwrap();
-        let rows = [(0, 2.0), (0, 3.0), (1, 4.0)].map(|(view, mse)| row("s", view, "a", mse));
+        let rows = [(0, 2.0), (0, 3.0), (1, 4.0)].map(|(view, mse)| Row {
+            view,
+            ..row("s", "a", mse)
+        });
         first.push(rows.to_vec()).unwrap();
         let second = Partial::resume(dir.path(), plan.clone()).unwrap();
         assert_eq!((second.done("s"), second.done("t")), (vec![0, 1], vec![]));
@@ -156,10 +151,8 @@ mod tests {
             resumed.unwrap_err().to_string()
         };
         let e = refused(&json!({"size": [8, 4], "methods": ["a"]}));
-        assert!(
-            e.contains("partial.json") && e.ends_with("settings: size"),
-            "{e}"
-        );
+        assert!(e.contains("partial.json"), "{e}");
+        assert!(e.ends_with("settings: size"), "{e}");
         let file = dir.path().join(Partial::FILE);
         let text = std::fs::read_to_string(&file).unwrap();
         std::fs::write(&file, text.replace("\"mse255\":2.0", "\"mse255\":0.5")).unwrap();

@@ -36,9 +36,8 @@ impl Displayed {
         if width < 8 || height < 8 {
             return None;
         }
-        image_compare::gray_similarity_structure(&algorithm, &exact.luma, &self.luma)
-            .ok()
-            .map(|s| s.score)
+        let found = image_compare::gray_similarity_structure(&algorithm, &exact.luma, &self.luma);
+        Some(found.ok()?.score)
     }
 
     /// Mean ꟻLIP (Andersson et al. 2020): NVIDIA's own code in `nv-flip`, for a display seen at 67 pixels a degree; 0 for

@@ -38,11 +38,15 @@ pub fn points_for(rows: &[Row], scene: &str) -> (Vec<Point>, Option<String>) {
 }
 
 impl Budget {
-    fn allows(&self, p: &Point) -> bool {
-        let within = |limit: Option<f64>, value: f64| limit.is_none_or(|l| value <= l);
-        within(self.ms, p.time_ms)
-            && within(self.error, p.mse())
-            && within(self.bytes, p.bytes.most)
+    /// The limits that are set, each with what a point has of it.
+    fn limits(&self, p: &Point) -> impl Iterator<Item = (f64, f64)> + use<> {
+        let all = [
+            (self.ms, p.time_ms),
+            (self.error, p.mse()),
+            (self.bytes, p.bytes.most),
+        ];
+        all.into_iter()
+            .filter_map(|(limit, value)| Some((limit?, value)))
     }
 
     /// The best of the points within the budget: the fastest where an error is asked for, else the most accurate (the faster
@@ -51,14 +55,16 @@ impl Budget {
     /// # Errors
     /// A sentence for the user.
     pub fn choose<'a>(&self, points: &'a [Point]) -> Result<Recommendation<'a>, String> {
-        let mut within: Vec<&Point> = points.iter().filter(|p| self.allows(p)).collect();
-        let by_time = |a: &&Point, b: &&Point| a.time_ms.total_cmp(&b.time_ms);
-        let by_error = |a: &&Point, b: &&Point| a.error.total_cmp(&b.error);
-        if self.error.is_some() {
-            within.sort_by(|a, b| by_time(a, b).then(by_error(a, b)));
-        } else {
-            within.sort_by(|a, b| by_error(a, b).then(by_time(a, b)));
-        }
+        let allows = |p: &&Point| self.limits(p).all(|(limit, value)| value <= limit);
+        let mut within: Vec<&Point> = points.iter().filter(allows).collect();
+        within.sort_by(|a, b| {
+            let by_time = a.time_ms.total_cmp(&b.time_ms);
+            let by_error = a.error.total_cmp(&b.error);
+            match self.error {
+                Some(_) => by_time.then(by_error),
+                None => by_error.then(by_time),
+            }
+        });
         let Some((&best, others)) = within.split_first() else {
             return Err(self.nearest(points));
         };
@@ -103,23 +109,20 @@ impl Budget {
     fn nearest(&self, points: &[Point]) -> String {
         // The largest factor by which a limit is exceeded.
         let excess = |p: &Point| {
-            let over = |limit: Option<f64>, value: f64| limit.map_or(0.0, |l| value / l);
-            over(self.ms, p.time_ms)
-                .max(over(self.error, p.mse()))
-                .max(over(self.bytes, p.bytes.most))
+            let ratios = self.limits(p).map(|(limit, value)| value / limit);
+            ratios.fold(0.0, f64::max)
         };
-        points
-            .iter()
-            .min_by(|a, b| excess(a).total_cmp(&excess(b)))
-            .map_or_else(
-                || "there is no timed method to choose from".to_owned(),
-                |p| {
-                    format!(
-                        "no method is within the budget; the nearest is {}: {:.2} ms, error {:.2e}, {:.0} bytes a pixel",
-                        p.method, p.time_ms, p.mse(), p.bytes.most
-                    )
-                },
-            )
+        let nearest = |a: &&Point, b: &&Point| excess(a).total_cmp(&excess(b));
+        let Some(p) = points.iter().min_by(nearest) else {
+            return "there is no timed method to choose from".to_owned();
+        };
+        format!(
+            "no method is within the budget; the nearest is {}: {:.2} ms, error {:.2e}, {:.0} bytes a pixel",
+            p.method,
+            p.time_ms,
+            p.mse(),
+            p.bytes.most
+        )
     }
 }
 

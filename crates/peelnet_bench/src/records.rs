@@ -49,7 +49,6 @@ pub struct Row {
     pub transmittance_error: Option<f64>,
     pub contour_pairs: Option<f64>,
     pub p99_error: f64,
-    /// The largest pixel error, 0–255 scale.
     pub max_error: f64,
     pub covered_pixels: u64,
     pub dark_pixels: u64,
@@ -72,13 +71,11 @@ const fn one() -> u32 {
 
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Bench {
-    /// Mean load of the machine before and after, see [`crate::load`].
     #[serde(default)]
     pub load: [Option<f64>; 2],
     /// Hash of the settings that it was measured with, by which a run that is resumed finds that it has finished.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub settings: Option<String>,
-    /// Scenes among them that a learned method was trained on.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub trained_on: Vec<String>,
     pub rows: Vec<Row>,
@@ -112,7 +109,6 @@ pub struct FrameRow {
     pub contour_pairs: Option<f64>,
 }
 
-/// Methods along a path: a row per method and scene, and one per method, scene and frame.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Along {
     pub size: [u32; 2],
@@ -141,7 +137,6 @@ pub struct LeftOut {
     pub why: String,
 }
 
-/// Exponents of a method's frame time and of the bytes of the whole frame.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Exponent {
     pub method: String,
@@ -182,7 +177,6 @@ pub struct Parts {
     pub ms_transparency: f64,
 }
 
-/// The view of layers with the highlighted layer alone shaded, and with all of them shaded.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct LayerCost {
     pub scene: String,
@@ -192,7 +186,6 @@ pub struct LayerCost {
     pub ratio: f64,
 }
 
-/// The same at one number of triangles and one fraction of the frame filled.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Fill {
     pub scene: String,
@@ -242,7 +235,6 @@ pub struct Stressed {
     pub rows: Vec<StressRow>,
 }
 
-/// Errors of a design over all views.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Score {
     pub to_moments: Option<f64>,

@@ -21,15 +21,8 @@ pub fn mean(values: impl IntoIterator<Item = f64>) -> Option<f64> {
 
 /// Geometric mean; `None` of nothing or if a value is not positive.
 pub fn geometric_mean(values: impl IntoIterator<Item = f64>) -> Option<f64> {
-    let (mut sum, mut n) = (0.0, 0);
-    for v in values {
-        if v.is_nan() || v <= 0.0 {
-            return None;
-        }
-        sum += v.ln();
-        n += 1;
-    }
-    (n > 0).then(|| (sum / f64::from(n)).exp())
+    let logarithms = values.into_iter().map(|v| (v > 0.0).then(|| v.ln()));
+    mean(logarithms.collect::<Option<Vec<f64>>>()?).map(f64::exp)
 }
 
 /// Each name once, in the order of the first.
@@ -56,6 +49,14 @@ impl Bytes {
     /// Whether every view takes the same.
     pub fn is_one(&self) -> bool {
         self.mean == self.most
+    }
+
+    /// One number, or mean, median and most over the views.
+    pub fn text(&self) -> String {
+        if self.is_one() {
+            return format!("{:.0}", self.most);
+        }
+        format!("{:.0}, {:.0}, {:.0}", self.mean, self.median, self.most)
     }
 }
 
@@ -157,11 +158,10 @@ pub(crate) mod tests {
     use super::*;
     use crate::front::BASE;
 
-    pub(crate) fn row(scene: &str, view: u32, method: &str, mse255: f64) -> Row {
+    pub(crate) fn row(scene: &str, method: &str, mse255: f64) -> Row {
         Row {
             method: method.to_owned(),
             scene: scene.to_owned(),
-            view,
             mse_linear: mse255 / 65025.0,
             mse255,
             bytes_per_pixel: Some(10.0),
@@ -173,7 +173,7 @@ pub(crate) mod tests {
     fn bytes_over_views_have_a_mean_a_median_and_a_largest() {
         let rows = [5.0, 1.0, 3.0, 7.0].map(|bytes| Row {
             bytes_per_pixel: Some(bytes),
-            ..row("a", 0, "x", 0.0)
+            ..row("a", "x", 0.0)
         });
         let bytes = Rows::new(&rows).bytes().unwrap();
         assert_eq!((bytes.mean, bytes.median, bytes.most), (4.0, 3.0, 7.0));
@@ -188,7 +188,7 @@ pub(crate) mod tests {
         for (scene, mine) in [("a", 1.0), ("b", 4.0)] {
             for (method, mse, ms) in [(WEIGHTED, 16.0, 1.0), (MOMENTS, 4.0, 2.0), ("x", mine, 3.0)]
             {
-                let mut r = row(scene, 0, method, 65025.0 * mse);
+                let mut r = row(scene, method, 65025.0 * mse);
                 r.time_ms = Some(ms);
                 rows.push(r);
             }

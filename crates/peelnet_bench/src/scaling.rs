@@ -10,7 +10,7 @@ use crate::{
     bench::Progress,
     compare::{Plan, method_ms},
     rows::mean,
-    stage::{Ready, Stage, Watch, camera, in_turn, percentile, quad},
+    stage::{Ready, Stage, Watch, camera, in_turn, percentile, rectangle},
 };
 use glam::Vec3;
 use peelnet_render::MethodOptions;
@@ -55,9 +55,6 @@ fn steps() -> Vec<Step> {
 }
 
 /// Measures the methods of a plan in all steps, so many timed frames of each after one that warms up; the steps have their own sizes.
-///
-/// # Errors
-/// If a method cannot draw; [`EvalError::Interrupted`] once `stop` is set.
 pub fn measure(
     gpu: &Gpu,
     plan: &Plan<'_>,
@@ -132,15 +129,14 @@ pub fn measure(
 
 /// Walls that fill the frame, nearest first in the list, so that sorting has something to do.
 fn stack(layers: u32, cells: u32) -> Scene {
-    let objects = (0..layers)
-        .map(|i| {
-            let t = i as f32 / layers as f32;
-            // The last layer of the deepest stack is still seen a little.
-            let alpha = (2.0 / layers as f32).min(0.5);
-            let material = Material::unlit([t, 1.0 - t, 0.5], alpha);
-            wall(1.0 + 9.0 * t, cells, material)
-        })
-        .collect();
+    let wall = |i: u32| {
+        let t = i as f32 / layers as f32;
+        // The last layer of the deepest stack is still seen a little.
+        let alpha = (2.0 / layers as f32).min(0.5);
+        let material = Material::unlit([t, 1.0 - t, 0.5], alpha);
+        wall(1.0 + 9.0 * t, cells, material)
+    };
+    let objects = (0..layers).map(wall).collect();
     let camera = Camera {
         fov_y_degrees: 60.0,
         ..camera([0.1, 100.0])
@@ -158,8 +154,7 @@ fn wall(depth: f32, cells: u32, material: Material) -> Object {
     };
     let square = |i: u32| {
         let (x, y) = (i % cells, i / cells);
-        let (right, above) = (x + 1, y + 1);
-        quad([(x, y), (right, y), (right, above), (x, above)].map(|(x, y)| vertex(x, y)))
+        rectangle([x, x + 1], [y, y + 1], vertex)
     };
     let triangles: Vec<[Vec3; 3]> = (0..cells * cells).flat_map(square).collect();
     Object::of_triangles(&format!("wall at {depth}"), &triangles, material)
@@ -238,11 +233,8 @@ mod tests {
             assert!(own.windows(2).all(|w| w[0].value() < w[1].value()));
             assert!(own.len() >= 5);
         }
-        for step in steps()
-            .iter()
-            .filter(|s| s.series == Series::Triangles)
-            .take(3)
-        {
+        let finer = steps().into_iter();
+        for step in finer.filter(|s| s.series == Series::Triangles).take(3) {
             let scene = stack(step.layers, step.cells);
             assert_eq!(scene.triangles() as u64, step.value());
         }

@@ -87,8 +87,18 @@ pub(crate) fn camera([near, far]: [f32; 2]) -> Camera {
     }
 }
 
-pub(crate) fn quad([a, b, c, d]: [Vec3; 4]) -> [[Vec3; 3]; 2] {
-    [[a, b, c], [a, c, d]]
+/// Two triangles from a left to a right place and from a low to a high one.
+pub(crate) fn rectangle<X: Copy, Y: Copy>(
+    [left, right]: [X; 2],
+    [low, high]: [Y; 2],
+    vertex: impl Fn(X, Y) -> Vec3,
+) -> [[Vec3; 3]; 2] {
+    let corner = vertex(left, low);
+    let across = vertex(right, high);
+    [
+        [corner, vertex(right, low), across],
+        [corner, across, vertex(left, high)],
+    ]
 }
 
 pub(crate) fn exact_method() -> MethodSpec {

@@ -73,10 +73,9 @@ impl<'a> Peeled<'a> {
             }
             Ok(())
         };
-        self.reader
-            .read_view(camera, sample, None, tile)
-            .map(|_| ())
-            .map_err(EvalError::at(format!("scene '{}'", self.scene.name)))
+        let failed = EvalError::at(format!("scene '{}'", self.scene.name));
+        let read = self.reader.read_view(camera, sample, None, tile);
+        read.map(drop).map_err(failed)
     }
 
     pub fn stacks(&mut self, view: usize) -> Result<Stacks, EvalError> {

@@ -48,33 +48,19 @@ pub enum BenchCommand {
     },
 }
 
-/// Flags of earlier versions that are commands now, with what to write instead.
+/// Flags of earlier versions that are commands now, with what to write before `--out`.
 const OLD_FLAGS: [(&str, &str); 5] = [
-    (
-        "path",
-        "--path is a command now: peelnet bench path SCENE --out DIR",
-    ),
-    (
-        "scaling",
-        "--scaling is a command now: peelnet bench scaling --out DIR",
-    ),
-    (
-        "effects",
-        "--effects is a command now: peelnet bench effects --out DIR",
-    ),
-    (
-        "designs",
-        "--designs is a command now: peelnet bench designs DATASET SCENE --out DIR",
-    ),
-    (
-        "redraw",
-        "--redraw is a command now: peelnet bench redraw --out DIR",
-    ),
+    ("path", "path SCENE"),
+    ("scaling", "scaling"),
+    ("effects", "effects"),
+    ("designs", "designs DATASET SCENE"),
+    ("redraw", "redraw"),
 ];
 
 /// Flags that are errors, and say so.
 fn old_flags() -> impl Iterator<Item = Arg> {
-    OLD_FLAGS.into_iter().map(|(flag, tip)| {
+    OLD_FLAGS.into_iter().map(|(flag, command)| {
+        let tip = format!("--{flag} is a command now: peelnet bench {command} --out DIR");
         let flag = Arg::new(flag).long(flag).hide(true);
         let parser = UnknownArgumentValueParser::suggest(tip);
         flag.action(ArgAction::SetTrue).value_parser(parser)

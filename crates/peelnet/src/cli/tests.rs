@@ -36,10 +36,8 @@ fn examples_in_help_texts_are_read() {
             examples += &help;
         }
     }
-    for line in examples
-        .lines()
-        .filter_map(|line| line.strip_prefix("  peelnet "))
-    {
+    let lines = examples.lines();
+    for line in lines.filter_map(|line| line.strip_prefix("  peelnet ")) {
         // What it does stands beside some, what takes its JSON behind others.
         let line = line.split("   ").next().unwrap_or_default();
         let line = line.split(" | ").next().unwrap_or_default();

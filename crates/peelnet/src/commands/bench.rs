@@ -13,9 +13,9 @@ use peelnet_bench::{
     bench::{Bench, Progress, bench_watched},
     compare::Plan,
     effects::{self, Effects},
+    json_hash,
     path::{self, Along},
     scaling::{self, Scaling},
-    settings_hash,
 };
 use peelnet_core::files::{error_line, shown};
 use peelnet_render::gpu::Gpu;
@@ -127,15 +127,9 @@ fn measure_effects(context: &Context<'_>, args: &EffectsArgs) -> Result<(), Fail
         frames: args.frames.max(1),
     };
     let gpu = context.gpu()?;
-    let found = effects::measure(
-        &gpu,
-        &scenes,
-        &settings,
-        &args.out,
-        context.stop,
-        &mut show(context, "effects"),
-    )?;
-    report(context, &gpu, &args.out, found, |results| {
+    let (out, show) = (&args.out, &mut show(context, "effects"));
+    let found = effects::measure(&gpu, &scenes, &settings, out, context.stop, show)?;
+    report(context, &gpu, out, found, |results| {
         let tables: Vec<String> = results.tables().iter().map(|(.., t)| t.plain()).collect();
         tables.join("\n")
     })
@@ -195,8 +189,9 @@ pub(super) fn measure(
     };
     // What must be the same for an interrupted run to be resumed.
     let names: Vec<String> = plan.methods.iter().map(ToString::to_string).collect();
+    let machine = Machine::describe(&gpu);
     let settings = json!({
-        "machine": Machine::describe(&gpu),
+        "machine": machine,
         "size": plan.size,
         "samples": plan.samples,
         "frames": plan.frames,
@@ -205,7 +200,7 @@ pub(super) fn measure(
         "models": plan.learned.iter().map(|l| &l.wgsl).collect::<Vec<_>>(),
         "scenes": scenes.iter().map(|s| &s.hash).collect::<Vec<_>>(),
     });
-    let hash = settings_hash(&settings);
+    let hash = json_hash(&settings);
     let partial = match out {
         Some((folder, true)) => {
             if let Some(finished) = finished(context, folder, &hash)? {
@@ -221,11 +216,7 @@ pub(super) fn measure(
     };
     measured.settings = Some(hash);
     context.warn_of_memory(&gpu);
-    Ok(Results::new(
-        Machine::describe(&gpu),
-        command_line(),
-        measured,
-    ))
+    Ok(Results::new(machine, command_line(), measured))
 }
 
 /// The results in a folder of a run with these settings that came to its end; nothing where no run ended there.
@@ -254,11 +245,10 @@ fn finished(
         }
         .into());
     }
-    let message = format!(
+    context.console.message(format!(
         "{}: the run has finished with these settings: its results are kept",
         shown(&file)
-    );
-    context.console.message(message);
+    ));
     Ok(Some(results))
 }
 
@@ -270,9 +260,6 @@ fn one_of_each() -> Vec<MethodSpec> {
 }
 
 /// The methods to compare, with the models of the learned ones among them and their texts; says which networks they are.
-///
-/// # Errors
-/// A model that cannot be loaded or exported, two of one recipe, or a method that was named and has none.
 pub(super) fn compared(
     context: &Context<'_>,
     gpu: &Gpu,
@@ -299,9 +286,8 @@ pub(super) fn compared(
 /// A bench's `results.json`, or the folder that holds it.
 pub(super) fn read(path: &Path) -> Result<Results<Bench>, Failure> {
     Results::read(path).map_err(|e| {
-        let text = error_line(&e);
-        Failure::failed(format!(
-            "{text}; make it with: peelnet bench SCENE --out DIR"
-        ))
+        let why = error_line(&e);
+        let text = format!("{why}; make it with: peelnet bench SCENE --out DIR");
+        Failure::failed(text)
     })
 }

@@ -1,4 +1,4 @@
-use super::{Context, few, json_path, losses};
+use super::{Context, count, few, json_path, losses};
 use crate::cli::{EFFECTS_METHOD, InspectArgs};
 use crate::summary_text::summary_text;
 use peelnet::Failure;
@@ -6,7 +6,7 @@ use peelnet_bench::effects::{self, Cost, Settings};
 use peelnet_core::files::{counted, one_line, printable, shown, thousands};
 use peelnet_dataset::{Dataset, Summary, is_remote};
 use peelnet_model::Model;
-use peelnet_render::{FrameStats, MethodOptions, MethodSpec, Renderer, shader_bytes};
+use peelnet_render::{FrameStats, shader_bytes};
 use peelnet_scene::{EFFECTS, Scene, SceneFeatures, file::ENDINGS, suite};
 use serde_json::json;
 use std::{collections::HashMap, path::Path};
@@ -36,10 +36,8 @@ pub(super) fn run(context: &Context<'_>, args: &InspectArgs) -> Result<(), Failu
         context.say_not_shipped("folder", path);
         dataset(context, path)
     } else if !path.exists() && !ships {
-        let path = shown(path);
-        Err(Failure::failed(format!(
-            "{path}: there is no such file or folder"
-        )))
+        let text = format!("{}: there is no such file or folder", shown(path));
+        Err(Failure::failed(text))
     } else if !path.exists() || ENDINGS.contains(&ending.as_str()) {
         scene(context, path, args.time)
     } else if is_model {
@@ -116,7 +114,9 @@ fn scene(context: &Context<'_>, path: &Path, time: bool) -> Result<(), Failure> 
             triangles[1] += if material.is_opaque() { 0 } else { n };
         }
     }
-    let counted = count(context, &scene).unwrap_or_else(|failure| {
+    let gpu = context.gpu();
+    let counted = gpu.and_then(|gpu| count(&gpu, &scene, COUNTED_AT));
+    let counted = counted.unwrap_or_else(|failure| {
         // The rest is known without a GPU.
         let warning = format!("fragments were not counted: {failure}");
         context.console.warn(warning);
@@ -170,16 +170,6 @@ fn scene(context: &Context<'_>, path: &Path, time: bool) -> Result<(), Failure> 
             "warnings": scene.warnings,
         })
     })
-}
-
-/// Draws view 0 exactly, which counts its fragments.
-fn count(context: &Context<'_>, scene: &Scene) -> Result<FrameStats, Failure> {
-    let gpu = context.gpu()?;
-    let camera = peelnet::view_of(scene, 0)?;
-    let renderer = Renderer::new(&gpu, scene)?;
-    let exact: MethodSpec = peelnet_bench::compare::EXACT.parse()?;
-    let mut prepared = renderer.method(&exact, MethodOptions::sized(COUNTED_AT))?;
-    Ok(renderer.image(&mut prepared, camera)?.stats)
 }
 
 fn scene_text(

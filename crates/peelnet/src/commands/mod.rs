@@ -15,11 +15,12 @@ use crate::console::Console;
 use crate::interrupt;
 use crate::progress::Bar;
 use peelnet::{Failure, model_for, weight_of};
+use peelnet_bench::compare::EXACT;
 use peelnet_bench::report::{Measurement, Results, kind_of};
 use peelnet_core::files::{Outputs, error_line, printable, shown};
 use peelnet_model::Model;
 use peelnet_render::gpu::Gpu;
-use peelnet_render::{ImageFormat, LearnedWeight, MethodSpec};
+use peelnet_render::{FrameStats, ImageFormat, LearnedWeight, MethodOptions, MethodSpec, Renderer};
 use peelnet_scene::{Scene, SceneError, suite};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -147,6 +148,14 @@ impl Context<'_> {
         }
         Ok(())
     }
+}
+
+/// Draws view 0 exactly, which counts its fragments.
+fn count(gpu: &Gpu, scene: &Scene, size: [u32; 2]) -> Result<FrameStats, Failure> {
+    let camera = peelnet::view_of(scene, 0)?;
+    let renderer = Renderer::new(gpu, scene)?;
+    let mut exact = renderer.method(&EXACT.parse()?, MethodOptions::sized(size))?;
+    Ok(renderer.image(&mut exact, camera)?.stats)
 }
 
 /// The losses of a model that are known, with the names of their rows.

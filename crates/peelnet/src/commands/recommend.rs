@@ -40,14 +40,13 @@ pub(super) fn run(context: &Context<'_>, args: &RecommendArgs) -> Result<(), Fai
     let untimed = untimed(&Rows::new(rows));
     let adapter = &results.machine.adapter;
     let line = |p: &Point| {
-        let error = if p.is_exact() {
-            "exact".to_owned()
-        } else {
-            format!("MSE {:.2e}", p.error)
-        };
         format!(
-            "{}: {:.2} ms ({:.2} x hardware blending), {error}, {:.0} bytes a pixel",
-            p.method, p.time_ms, p.time, p.bytes.most
+            "{}: {:.2} ms ({:.2} x hardware blending), {}, {:.0} bytes a pixel",
+            p.method,
+            p.time_ms,
+            p.time,
+            p.error_text(),
+            p.bytes.most
         )
     };
     let text = || {

@@ -1,26 +1,25 @@
 //! `peelnet run`: extract, train, export and compare in one go.
 
-use super::{Context, bench, command_line, extract, losses, train};
+use super::{Context, bench, command_line, count, extract, losses, train};
 use crate::cli::RunArgs;
 use crate::summary_text::{self, summary_text};
 use peelnet::Failure;
-use peelnet::loss_curve::{CurveFormat, curve_chart};
+use peelnet::loss_curve::{curve_chart, curve_kind};
 use peelnet_bench::bench::{bench_watched, trained_on};
 use peelnet_bench::chart::Svg;
 use peelnet_bench::compare::{EXACT, Plan};
 use peelnet_bench::front;
 use peelnet_bench::report::{Results, Stage, ThesisRun, write_file};
 use peelnet_bench::{Machine, Partial, Row};
-use peelnet_core::files::{Outputs, counted, shown};
+use peelnet_core::files::{counted, shown};
 use peelnet_dataset::{Dataset, SplitBy, Summary};
 use peelnet_model::{Model, Recipe};
 use peelnet_peel::ExtractOptions;
 use peelnet_render::gpu::Gpu;
-use peelnet_render::{LearnedWeight, MethodOptions, MethodSpec, Renderer, role};
+use peelnet_render::{LearnedWeight, MethodSpec, role};
 use peelnet_scene::{Scene, suite};
 use peelnet_train::{Config, Outcome, RunOptions};
 use serde_json::json;
-use std::path::Path;
 use std::time::Instant;
 
 /// Shipped scenes whose names begin so are the thesis's family.
@@ -42,8 +41,7 @@ const SHOWN: [&str; 8] = [
 /// The scene of it: held out, and of another kind than those of the run.
 const SHOWN_SCENE: &str = "foliage-held";
 
-/// Everything that a run writes but its dataset, which has its own way.
-fn outputs(context: &Context<'_>, args: &RunArgs) -> Result<Outputs, Failure> {
+pub(super) fn run(context: &Context<'_>, args: &RunArgs) -> Result<(), Failure> {
     let mut outputs = context.results::<ThesisRun>(&args.scenes, &args.out)?;
     peelnet_dataset::replaces(&args.out.join("dataset"), false)?;
     let files = [
@@ -52,15 +50,10 @@ fn outputs(context: &Context<'_>, args: &RunArgs) -> Result<Outputs, Failure> {
         ("model.safetensors", peelnet_model::KIND),
         ("model.wgsl", peelnet_export::KIND),
         ("model.json", peelnet_export::JSON_KIND),
-        ("loss.csv", CurveFormat::Csv.kind()),
-        ("loss.svg", CurveFormat::Svg.kind()),
+        ("loss.csv", curve_kind("loss.csv".as_ref())?),
+        ("loss.svg", curve_kind("loss.svg".as_ref())?),
     ];
     outputs.folder("--out", &args.out, files)?;
-    Ok(outputs)
-}
-
-pub(super) fn run(context: &Context<'_>, args: &RunArgs) -> Result<(), Failure> {
-    let mut outputs = outputs(context, args)?;
     let scenes = if args.scenes.is_empty() {
         let family = suite::SCENES.iter().filter(|f| f.name.starts_with(FAMILY));
         let family = family.map(|file| suite::load_file(file, None));
@@ -101,9 +94,11 @@ pub(super) fn run(context: &Context<'_>, args: &RunArgs) -> Result<(), Failure> 
     let (dataset, summary) = run.extract(share)?;
     let (outcome, loss) = run.train(&dataset)?;
     let learned = run.export(&outcome.model)?;
-    let images = args.out.join("images");
-    let showcase = run.showcase(&learned, &images)?;
-    let rows = run.compare(&learned, &images)?;
+    let showcase = run.showcase(&learned)?;
+    // Every method that there is, and the learned one, on every view of every scene.
+    let mut methods = MethodSpec::all();
+    methods.push(learned.recipe.method.parse()?);
+    let rows = run.draw("compare", &scenes, &methods, &learned, 0)?;
     let mut results = Results::of_rows(Machine::describe(&run.gpu), command_line(), rows);
     results.measured.settings = run.settings(share, &outcome.model);
     results.measured.trained_on = trained_on(&scenes, [&outcome.model]);
@@ -154,16 +149,11 @@ impl Run<'_> {
     /// Counts the fragments of the training scenes' views, estimated from view 0 of each, and returns the share of the pixels that has
     /// about as many rows as were asked for.
     fn count(&mut self) -> Result<f64, Failure> {
-        let exact: MethodSpec = EXACT.parse()?;
         let mut fragments = 0;
-        for scene in self.scenes.iter().filter(|s| !s.held_out) {
-            let Some(camera) = scene.views.first() else {
-                continue;
-            };
-            let renderer = Renderer::new(&self.gpu, scene)?;
-            let mut prepared = renderer.method(&exact, MethodOptions::sized(self.frame))?;
-            let stats = renderer.image(&mut prepared, camera)?.stats;
-            fragments += stats.fragments.unwrap_or(0) * scene.views.len() as u64;
+        let seen = |scene: &&Scene| !scene.held_out && !scene.views.is_empty();
+        for scene in self.scenes.iter().filter(seen) {
+            let of_view = count(&self.gpu, scene, self.frame)?.fragments;
+            fragments += of_view.unwrap_or(0) * scene.views.len() as u64;
         }
         if fragments == 0 {
             return Err(Failure::failed(
@@ -234,7 +224,7 @@ impl Run<'_> {
 
     /// The shipped networks beside the trained one and what they compete with, timed, on a scene that none of them saw; where scenes
     /// were named, on the first of them that is held out.
-    fn showcase(&mut self, trained: &LearnedWeight, images: &Path) -> Result<Vec<Row>, Failure> {
+    fn showcase(&mut self, trained: &LearnedWeight) -> Result<Vec<Row>, Failure> {
         let scene = if self.args.scenes.is_empty() {
             suite::load(SHOWN_SCENE)?
         } else {
@@ -244,37 +234,28 @@ impl Run<'_> {
             }
         };
         let methods: Vec<MethodSpec> = SHOWN.iter().map(|m| m.parse()).collect::<Result<_, _>>()?;
-        let plan = Plan {
-            learned: std::slice::from_ref(trained),
-            lenient: true,
-            images: Some(images),
-            ..Plan::new(self.frame, &methods)
-        };
-        self.draw("showcase", std::slice::from_ref(&scene), &plan)
+        let scenes = std::slice::from_ref(&scene);
+        self.draw("showcase", scenes, &methods, trained, 5)
     }
 
-    /// Every method that there is, and the learned one, on every view of every scene.
-    fn compare(&mut self, learned: &LearnedWeight, images: &Path) -> Result<Vec<Row>, Failure> {
-        let mut methods = MethodSpec::all();
-        methods.push(learned.recipe.method.parse()?);
-        let plan = Plan {
-            learned: std::slice::from_ref(learned),
-            lenient: true,
-            frames: 0,
-            images: Some(images),
-            ..Plan::new(self.frame, &methods)
-        };
-        self.draw("compare", self.scenes, &plan)
-    }
-
-    /// Draws the scenes by a plan, with a progress bar.
+    /// Draws the scenes with methods, so many timed frames of each, with a progress bar.
     fn draw(
         &mut self,
         stage: &'static str,
         scenes: &[Scene],
-        plan: &Plan<'_>,
+        methods: &[MethodSpec],
+        learned: &LearnedWeight,
+        frames: u32,
     ) -> Result<Vec<Row>, Failure> {
         let context = self.context;
+        let images = self.args.out.join("images");
+        let plan = Plan {
+            learned: std::slice::from_ref(learned),
+            lenient: true,
+            frames,
+            images: Some(&images),
+            ..Plan::new(self.frame, methods)
+        };
         let views: usize = scenes.iter().map(|s| s.views.len()).sum();
         let names: Vec<&str> = scenes.iter().map(|s| s.name.as_str()).collect();
         context.console.message(format!(
@@ -286,7 +267,7 @@ impl Run<'_> {
         let partial = Partial::new(None, serde_json::Value::Null);
         let bench = {
             let show = &mut bench::show(context, stage);
-            bench_watched(&self.gpu, scenes, plan, partial, context.stop, show)?
+            bench_watched(&self.gpu, scenes, &plan, partial, context.stop, show)?
         };
         let frames = counted(bench.rows.len() as u64, "frame");
         let note = format!("{frames} at {}", self.size());
@@ -298,12 +279,10 @@ impl Run<'_> {
     fn settings(&self, share: f64, model: &Model) -> Vec<(String, String)> {
         let names = |held_out: bool| {
             let scenes = self.scenes.iter().filter(|s| s.held_out == held_out);
-            let names: Vec<&str> = scenes.map(|s| s.name.as_str()).collect();
-            let names = if names.is_empty() {
-                vec!["none"]
-            } else {
-                names
-            };
+            let mut names: Vec<&str> = scenes.map(|s| s.name.as_str()).collect();
+            if names.is_empty() {
+                names.push("none");
+            }
             names.join(", ")
         };
         let sizes = if self.args.full { "full" } else { "quick" };

@@ -65,9 +65,8 @@ pub(super) fn run(context: &Context<'_>, args: &StressArgs) -> Result<(), Failur
     if let Some(out) = &args.out {
         results.write(out)?;
     }
-    context
-        .console
-        .result(|| text(&results), || json!(results))?;
+    let console = context.console;
+    console.result(|| text(&results), || json!(results))?;
     let what = match results.measured.rows_with(Outcome::Fail).count() {
         0 => return Ok(()),
         1 => "1 property does".to_owned(),

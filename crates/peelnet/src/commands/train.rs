@@ -86,28 +86,20 @@ pub(super) fn fit(
     loss_curves: &[PathBuf],
 ) -> Result<Outcome, Failure> {
     let console = context.console;
-    let mut bar = config
-        .buffer_rows
-        .map(|_| Bar::new(console, "read", datasets.iter().map(Dataset::rows).sum()));
-    let outcome = fit::fit(
-        config,
-        datasets,
-        options,
-        loss_curves,
-        &mut |step| match step {
-            Step::Read(rows, of) => bar.iter().for_each(|bar| bar.set(rows, of, String::new())),
-            Step::Ready(data) => {
-                bar = None;
-                say(context, config, data, &options.out);
-                bar = Some(Bar::new(console, "train", config.epochs.into()));
-            }
-            Step::Epoch(e) => {
-                let text = e.progress();
-                bar.iter()
-                    .for_each(|bar| bar.set(e.epoch.into(), e.epochs.into(), text.clone()));
-            }
-        },
-    );
+    let rows = datasets.iter().map(Dataset::rows).sum();
+    let read = || Bar::new(console, "read", rows);
+    let mut bar = config.buffer_rows.is_some().then(read);
+    let mut show = |step: Step<'_>| match (step, &bar) {
+        (Step::Read(rows, of), Some(bar)) => bar.set(rows, of, String::new()),
+        (Step::Epoch(e), Some(bar)) => bar.set(e.epoch.into(), e.epochs.into(), e.progress()),
+        (Step::Ready(data), _) => {
+            bar = None;
+            say(context, config, data, &options.out);
+            bar = Some(Bar::new(console, "train", config.epochs.into()));
+        }
+        _ => {}
+    };
+    let outcome = fit::fit(config, datasets, options, loss_curves, &mut show);
     drop(bar);
     let outcome = outcome?;
     if outcome.end == End::Interrupted {
@@ -212,9 +204,7 @@ pub(super) fn text(out: &Path, outcome: &Outcome) -> String {
     t.push_str(&format!(", {:.1} s, {rate} rows/s", seconds(outcome)));
     for (scene, error) in &meta.held_out {
         let scene = printable(scene);
-        t.push_str(&format!(
-            "\nheld-out scene {scene}: mean error of T {error:.4}"
-        ));
+        t += &format!("\nheld-out scene {scene}: mean error of T {error:.4}");
     }
     t
 }

@@ -26,7 +26,6 @@ impl Line {
     }
 }
 
-/// How the x axis grows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scale {
     Linear,

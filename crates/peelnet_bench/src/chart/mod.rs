@@ -9,12 +9,11 @@
 //! let svg = line_chart(&[line], "passes", "error", Scale::Linear);
 //! assert!(svg.as_str().contains("error &lt;of&gt; a method"));
 //! ```
-#![allow(missing_docs)]
 
 mod bubbles;
 mod lines;
 
-pub use bubbles::{Bubble, bubble_chart};
+pub use bubbles::bubble_chart;
 pub use lines::{Line, Scale, line_chart};
 
 use maud::{Markup, html};
@@ -32,15 +31,13 @@ const MARK: &str = "<metadata>peelnet</metadata>";
 /// The elements of our own that are added to what plotters draw.
 type Drawn = Result<Markup, Box<dyn std::error::Error>>;
 
-type Builder<'a, 's> = ChartBuilder<'a, 'a, SVGBackend<'s>>;
-
 /// A picture as SVG text, without XML prolog and with a transparent background.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Svg(String);
 
 impl Svg {
     /// What plotters draw, with the elements of our own that `draw` returns at its end.
-    fn new(draw: impl FnOnce(&mut Builder<'_, '_>) -> Drawn) -> Self {
+    fn new(draw: impl FnOnce(&mut ChartBuilder<'_, '_, SVGBackend<'_>>) -> Drawn) -> Self {
         let mut text = String::new();
         let drawn = {
             let area = SVGBackend::with_string(&mut text, SIZE).into_drawing_area();

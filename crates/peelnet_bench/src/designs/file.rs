@@ -55,8 +55,6 @@ pub fn shipped() -> Vec<Entry> {
     parse(peelnet_shipped_scenes::DESIGNS, Path::new(DESIGNS)).expect("a test reads them")
 }
 
-/// # Errors
-/// A file that cannot be read, or that holds an entry that cannot be used.
 pub fn read(path: &Path) -> Result<Vec<Entry>, EvalError> {
     let bytes = peelnet_core::files::read(path, MAX_BYTES).map_err(EvalError::io(path, "read"))?;
     let text = String::from_utf8(bytes)
@@ -71,9 +69,6 @@ fn failed(path: &Path, what: &str, why: &str) -> EvalError {
 /// Parses the text of a file of designs; `path` only serves messages.
 ///
 /// Recipes live as long as the program: each call leaks a few hundred bytes a design.
-///
-/// # Errors
-/// The entry that cannot be used.
 pub fn parse(text: &str, path: &Path) -> Result<Vec<Entry>, EvalError> {
     let file: RawFile =
         toml::from_str(text).map_err(|e| failed(path, "not understood", &e.to_string()))?;
@@ -88,15 +83,8 @@ pub fn parse(text: &str, path: &Path) -> Result<Vec<Entry>, EvalError> {
     let mut entries: Vec<Entry> = Vec::new();
     for (raw, number) in file.design.into_iter().zip(1..) {
         let what = format!("design {number} ({:?})", raw.name);
-        if raw.name.trim().is_empty() {
-            return Err(failed(path, &what, "give it a name"));
-        }
-        if entries.iter().any(|e| e.name == raw.name) {
-            let why = "an earlier design has this name; rename one";
-            return Err(failed(path, &what, why));
-        }
-        let entry = raw.entry(budget).map_err(|why| failed(path, &what, &why))?;
-        entries.push(entry);
+        let entry = raw.entry(budget, &entries);
+        entries.push(entry.map_err(|why| failed(path, &what, &why))?);
     }
     if entries.is_empty() {
         let why = "begin each design with a line [[design]]";
@@ -106,7 +94,13 @@ pub fn parse(text: &str, path: &Path) -> Result<Vec<Entry>, EvalError> {
 }
 
 impl RawDesign {
-    fn entry(self, budget: Budget) -> Result<Entry, String> {
+    fn entry(self, budget: Budget, earlier: &[Entry]) -> Result<Entry, String> {
+        if self.name.trim().is_empty() {
+            return Err("give it a name".to_owned());
+        }
+        if earlier.iter().any(|e| e.name == self.name) {
+            return Err("an earlier design has this name; rename one".to_owned());
+        }
         let design = Design {
             slabs: self.slabs()?,
             records: self.records()?,
@@ -288,10 +282,8 @@ seed = 7
         };
         let slabs = [(0.25, true, true, false), (1.0, false, true, true)];
         assert_eq!(kept(plain.design.slabs), slabs);
-        assert_eq!(
-            (plain.design.records, plain.design.apart),
-            (FARTHEST_CODE, false)
-        );
+        assert_eq!(plain.design.records, FARTHEST_CODE);
+        assert!(!plain.design.apart);
         assert_eq!((plain.inputs.len(), plain.seed), (9, 1));
         assert_eq!(plain.recipe.network.hidden, [12]);
         assert_eq!(plain.recipe.loss, Some(PixelLoss::Image));
@@ -345,10 +337,7 @@ seed = 7
             let text = GOOD.replacen(old, new, 1);
             let message = parse(&text, Path::new("f.toml")).unwrap_err().to_string();
             for part in ["f.toml", place, fix] {
-                assert!(
-                    message.contains(part),
-                    "{new:?}: {message:?} lacks {part:?}"
-                );
+                assert!(message.contains(part), "{new:?}, {part:?}: {message:?}");
             }
         }
     }

@@ -66,9 +66,8 @@ pub(super) fn of_boxes(view: &View, scene: &Scene, camera: &Camera, size: [u32; 
         // Of length 1 along the view axis: lengths are linear depths.
         let direction = Vec3::new(across * up * width / height, upward * up, -1.0);
         let direction = world_from_view.transform_vector3(direction);
-        let crossed = boxes
-            .iter()
-            .filter_map(|b| crossed(b, camera.position, direction));
+        let boxes = boxes.iter();
+        let crossed = boxes.filter_map(|b| crossed(b, camera.position, direction));
         let ends = crossed.flatten().map(|z| z.clamp(camera.near, camera.far));
         let zetas: Vec<f64> = ends.map(|z| view.warp.apply(z.into())).collect();
         if zetas.is_empty() {
@@ -201,10 +200,8 @@ mod tests {
         let view = View::new("s", warp, 64, lists);
         let of = |depths: &[f64]| Range::from_depths(depths.iter().map(|&z| warp.apply(z)));
         let found = of_last(&view, &before, 8, 8);
-        assert_eq!(
-            found,
-            [of(&[3.0, 5.0]), of(&[5.0]), Range::WHOLE, of(&[3.0, 5.0])]
-        );
+        let both = of(&[3.0, 5.0]);
+        assert_eq!(found, [both, of(&[5.0]), Range::WHOLE, both]);
     }
 
     /// Where all absorbance lies at one depth, that depth is the middle of half of the scale.
@@ -221,11 +218,8 @@ mod tests {
             (1.0 / 128.0, 0.5 + 1.0 / 256.0),
             (1.0, 1.0),
         ] {
-            let found = quantiles.apply(zeta);
-            assert!(
-                (found - expected).abs() < 1e-9,
-                "{zeta}: {found}, not {expected}"
-            );
+            let off = quantiles.apply(zeta) - expected;
+            assert!(off.abs() < 1e-9, "{zeta} is off by {off}");
         }
     }
 }

@@ -23,22 +23,16 @@ fn one_slab_without_records_is_a_closed_form() {
     let text = "ends = [1.0]\nmeans = [false]\nnearest = [false]\nfarthest = [false]\n";
     let alphas = [0.5f32, 0.75, 0.25];
     let colors = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-    let list: Vec<Fragment> = (0..3)
-        .map(|i| Fragment::new(10.0 * (i + 1) as f32, alphas[i], colors[i]))
-        .collect();
+    let fragment = |i: usize| Fragment::new(10.0 * (i + 1) as f32, alphas[i], colors[i]);
+    let list: Vec<Fragment> = (0..3).map(fragment).collect();
     let total: f64 = alphas.iter().map(|&a| absorbance(a)).sum();
-    let shares: Vec<f64> = alphas
-        .iter()
-        .map(|&a| f64::from(a) * (-0.5 * (total - absorbance(a))).exp())
-        .collect();
+    let shares = alphas.map(|a| f64::from(a) * (-0.5 * (total - absorbance(a))).exp());
     let left = 1.0 - (-total).exp();
     let sum: f64 = shares.iter().sum();
     let exact = over::composite_f64(&list, [0.0; 3]);
     // Fragment i is alone in channel i. Two of the four pixels hold the list.
-    let squares: f64 = (0..3)
-        .map(|i| (shares[i] / sum * left - exact[i]).powi(2))
-        .sum();
-    let expected = 2.0 * squares / 12.0;
+    let squares = [0, 1, 2].map(|i| (shares[i] / sum * left - exact[i]).powi(2));
+    let expected = 2.0 * squares.iter().sum::<f64>() / 12.0;
     let found = entry(text).measure(&view([list.clone(), list]), None);
     let off = (found.mse_linear / expected - 1.0).abs();
     // Roundings to 2⁻¹¹, of differences of a tenth.
@@ -63,14 +57,10 @@ fn scores_are_geometric_means_and_the_worst_scene() {
     let kbuffer = of([1e-3, 4e-3], [None; 2]);
     let score = score(&views, &own, &moments, &kbuffer);
     let close = |a: Option<f64>, b: f64| (a.unwrap() - b).abs() < 1e-12;
-    assert!(
-        close(score.to_moments, 0.5) && close(score.to_kbuffer, 0.5),
-        "{score:?}"
-    );
+    assert!(close(score.to_moments, 0.5), "{score:?}");
+    assert!(close(score.to_kbuffer, 0.5), "{score:?}");
     assert_eq!(score.worst_scene.as_deref(), Some("b"));
-    assert!(
-        close(score.worst, 1.0) && close(score.contour_pairs, 0.5),
-        "{score:?}"
-    );
+    assert!(close(score.worst, 1.0), "{score:?}");
+    assert!(close(score.contour_pairs, 0.5), "{score:?}");
     assert!(close(score.flicker[0], 0.5) && score.flicker[1].is_none());
 }

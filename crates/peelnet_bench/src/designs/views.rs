@@ -44,7 +44,6 @@ struct Shown {
     pairs: Pairs,
 }
 
-/// All transparent fragments of a view.
 pub struct View {
     scene: String,
     pub warp: DepthWarp,
@@ -72,7 +71,6 @@ impl Stacked<'_> {
         &self.view.stacks[self.number].fragments
     }
 
-    /// What is cut into slabs, and the scale of its depths.
     pub(super) fn extent(&self, source: Source) -> Extent {
         let given = |found: &[Range]| {
             let found = found.get(self.number);
@@ -221,9 +219,6 @@ impl View {
 /// Peels all views of the scenes, or the first of each, and draws their exact images; and once more after each of [`MOTIONS`].
 ///
 /// All fragments are held in memory: about 120 bytes each.
-///
-/// # Errors
-/// A view that cannot be drawn; [`EvalError::Interrupted`] once `stop` is set.
 pub fn peel(
     gpu: &Gpu,
     scenes: &[Scene],

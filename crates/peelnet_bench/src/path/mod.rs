@@ -43,9 +43,8 @@ fn mean_absolute(image: &[[f32; 3]]) -> f64 {
 
 fn change_of(before: &[[f32; 3]], after: &[[f32; 3]]) -> Vec<[f32; 3]> {
     let pixels = before.iter().zip(after);
-    pixels
-        .map(|(b, a)| std::array::from_fn(|k| a[k] - b[k]))
-        .collect()
+    let changes = pixels.map(|(b, a)| std::array::from_fn(|k| a[k] - b[k]));
+    changes.collect()
 }
 
 /// Means over the frames of a method; `mse_8bit` is that of all frames.
@@ -67,7 +66,6 @@ fn path_row(frames: &[FrameRow], mse_8bit: f64, jod: Option<f64>) -> PathRow {
     }
 }
 
-/// The exact frames, and what they are compared as.
 #[derive(Default)]
 struct Exact {
     frames: Vec<(Image, Displayed)>,
@@ -75,7 +73,6 @@ struct Exact {
     video: Vec<VideoFrame>,
 }
 
-/// A scene's path under measurement.
 struct Take<'a, 'w> {
     stage: Stage<'a>,
     plan: &'a Plan<'a>,
@@ -179,9 +176,6 @@ impl Take<'_, '_> {
 
 /// Measures all methods of a plan along the paths of all scenes, of so many frames as it has; strips of frames are saved as
 /// `<scene>-<method>.png`. With [`Plan::lenient`], a method that has no passes is left out, too.
-///
-/// # Errors
-/// If a method cannot draw, a path is too long to be kept, or a picture cannot be written; [`EvalError::Interrupted`] once `stop` is set.
 pub fn measure(
     gpu: &Gpu,
     scenes: &[Scene],

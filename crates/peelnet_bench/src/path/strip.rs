@@ -16,13 +16,10 @@ const MAGNIFIED: f32 = 8.0;
 /// Frames at even distances: of the exact video the frames, of a method the error image and, below it, its change since the frame before,
 /// both magnified by 8. Of a method, the frame of the largest change stands at the end: what pops does so between two frames.
 pub(crate) struct Strip {
-    /// Size of a frame.
     size: [u32; 2],
-    /// Frames of the video.
     frames: usize,
     /// From left to right, in linear light.
     columns: Vec<Rgba32FImage>,
-    /// The largest change and its column.
     worst: Option<(f64, Rgba32FImage)>,
 }
 
@@ -41,13 +38,10 @@ impl Strip {
         (0..shown).any(|k| k * self.frames / shown == number)
     }
 
-    /// Adds a frame as it is displayed.
     pub fn add_frame(&mut self, number: usize, image: &Image) {
         if self.shows(number) {
-            let levels = image.pixels.iter();
-            let levels: Vec<[f32; 3]> = levels
-                .map(|p| [p[0], p[1], p[2]].map(|c| 255.0 * srgb::encode(c)))
-                .collect();
+            let level = |p: &[f32; 4]| [p[0], p[1], p[2]].map(|c| 255.0 * srgb::encode(c));
+            let levels: Vec<[f32; 3]> = image.pixels.iter().map(level).collect();
             self.columns.push(self.shrunk(&[&levels], |x| x));
         }
     }

@@ -1,8 +1,9 @@
 //! The files of `peelnet bench effects`: what effects cost, what they look like, and what shading one layer saves.
 
+use crate::EvalError;
 use crate::chart::{Line, Scale, Svg, line_chart};
 use crate::effects::{Cost, Effects, FILLED, Fill, LayerCost, Parts, picture_of};
-use crate::report::{Files, Measurement, ReportError, Results, Table, page, picture::figure_of};
+use crate::report::{Files, Measurement, Results, Table, page, picture::figure_of};
 use maud::{Markup, html};
 use std::path::Path;
 
@@ -124,32 +125,24 @@ impl Results<Effects> {
     }
 
     fn settings(&self) -> String {
-        let m = &self.measured;
-        let [width, height] = m.size;
-        format!(
-            "{width}x{height}, medians of {} frames drawn in turn",
-            m.frames
-        )
+        let ([width, height], frames) = (self.measured.size, self.measured.frames);
+        format!("{width}x{height}, medians of {frames} frames drawn in turn")
     }
 
     fn markdown(&self) -> String {
-        let tables = self
-            .tables()
-            .into_iter()
-            .map(|(title, note, table)| format!("## {title}\n\n{note}\n\n{}\n", table.markdown()));
+        let mut tables = String::new();
+        for (title, note, table) in self.tables() {
+            tables += &format!("## {title}\n\n{note}\n\n{}\n", table.markdown());
+        }
         format!(
-            "{}`{}`, {}. {}\n",
-            tables.collect::<String>(),
+            "{tables}`{}`, {}. {}\n",
             self.measured.method,
             self.settings(),
             self.credit()
         )
     }
 
-    fn page(&self, folder: &Path) -> Result<String, ReportError> {
-        let pairs = self.measured.costs.iter();
-        let pairs = pairs.map(|c| pair(c, folder));
-        let pairs = pairs.collect::<Result<Vec<Markup>, _>>()?;
+    fn page(&self, folder: &Path) -> Result<String, EvalError> {
         let body = html! {
             p { (self.measured.method) " at " (self.settings()) "." }
             @for (title, note, table) in self.tables() {
@@ -159,7 +152,7 @@ impl Results<Effects> {
                 @if title == LAYERS { (page::chart("curve", &self.layer_chart())) }
             }
             h2 { "With and without" }
-            @for pair in pairs { (pair) }
+            @for cost in &self.measured.costs { (pair(cost, folder)?) }
         };
         Ok(page::page(self, "What effects cost", body, &[], None))
     }
@@ -169,7 +162,7 @@ fn two(x: f64) -> String {
     format!("{x:.2}")
 }
 
-fn pair(cost: &Cost, folder: &Path) -> Result<Markup, ReportError> {
+fn pair(cost: &Cost, folder: &Path) -> Result<Markup, EvalError> {
     let mut figures = Vec::new();
     for (on, word) in [(true, "with"), (false, "without")] {
         let path = picture_of(folder, &cost.scene, &cost.effect, on);

@@ -1,7 +1,6 @@
 //! Files appear whole or not at all.
 
-use crate::chart::Svg;
-use crate::report::{ReportError, page};
+use crate::{EvalError, chart::Svg, report::page};
 use peelnet_core::files::Kind;
 use serde::Serialize;
 use std::path::Path;
@@ -17,36 +16,25 @@ const TABLES: [&str; 4] = [
 
 /// By what a file of a measurement is known, from its name.
 pub fn kind_of(name: &str) -> Kind {
-    match name.rsplit('.').next().unwrap_or_default() {
-        "html" => Kind {
-            name: "a report of peelnet",
-            is: |head| contains(head, &["<!DOCTYPE html>", page::GENERATOR_TAG]),
-        },
-        "svg" => Kind {
-            name: "a chart of peelnet",
-            is: Svg::is_ours,
-        },
-        "csv" => Kind {
-            name: "a table of peelnet",
-            is: |head| {
-                TABLES
-                    .iter()
-                    .any(|start| head.starts_with(start.as_bytes()))
-            },
-        },
-        "md" => Kind {
-            name: "a table of peelnet",
-            // The sentence under every table.
-            is: |head| contains(head, &["Measured on ", ") with `"]),
-        },
-        _ => Kind {
-            name: "results of peelnet",
-            // The envelope begins with the machine.
-            is: |head| {
-                head.starts_with(b"{\n  \"machine\": {") && contains(head, &["\"command\": "])
-            },
-        },
-    }
+    let (name, is): (_, fn(&[u8]) -> bool) = match name.rsplit('.').next().unwrap_or_default() {
+        "html" => ("a report of peelnet", |head| {
+            contains(head, &["<!DOCTYPE html>", page::GENERATOR_TAG])
+        }),
+        "svg" => ("a chart of peelnet", Svg::is_ours),
+        "csv" => ("a table of peelnet", |head| {
+            let mut starts = TABLES.iter().map(|start| start.as_bytes());
+            starts.any(|start| head.starts_with(start))
+        }),
+        // The sentence under every table.
+        "md" => ("a table of peelnet", |head| {
+            contains(head, &["Measured on ", ") with `"])
+        }),
+        // The envelope begins with the machine.
+        _ => ("results of peelnet", |head| {
+            head.starts_with(b"{\n  \"machine\": {") && contains(head, &["\"command\": "])
+        }),
+    };
+    Kind { name, is }
 }
 
 fn contains(head: &[u8], texts: &[&str]) -> bool {
@@ -55,12 +43,9 @@ fn contains(head: &[u8], texts: &[&str]) -> bool {
 }
 
 /// Writes a file whole, creating its folder if need be.
-///
-/// # Errors
-/// If the folder or the file cannot be written; then nothing is left behind.
-pub fn write_file(path: &Path, bytes: impl AsRef<[u8]>) -> Result<(), ReportError> {
+pub fn write_file(path: &Path, bytes: impl AsRef<[u8]>) -> Result<(), EvalError> {
     let written = peelnet_core::files::write_whole(path, bytes.as_ref());
-    written.map_err(ReportError::at(path, "cannot write"))
+    written.map_err(EvalError::io(path, "write"))
 }
 
 /// Rows of flat fields as CSV with a header.

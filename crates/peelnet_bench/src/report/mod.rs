@@ -7,12 +7,10 @@
 //! [`Results`] is the one envelope of every kind of measurement. Each kind is a [`Measurement`] with its tables and charts,
 //! which [`Results::write`] writes as a folder of files. Pages are one HTML file each, which needs neither network nor any other
 //! file. They are built with maud, which escapes all text; charts come from `crate::chart`, which escapes as well.
-#![allow(missing_docs)]
 
 mod bench;
 mod designs;
 mod effects;
-mod error;
 mod files;
 mod page;
 mod path;
@@ -25,7 +23,6 @@ mod table;
 mod testing;
 mod thesis;
 
-pub use error::ReportError;
 pub use files::{kind_of, write_file};
 pub use results::{Files, Measurement, Results};
 pub use table::Table;

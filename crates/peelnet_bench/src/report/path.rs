@@ -2,13 +2,14 @@
 
 use crate::chart::{Line, Scale, Svg, line_chart};
 use crate::report::{
-    Files, Measurement, ReportError, Results, Table,
+    Files, Measurement, Results, Table,
     files::csv,
     page::{self, SORT_SCRIPT},
     picture::figure_of,
     table::number,
 };
 use crate::{
+    EvalError,
     compare::{EXACT, image_name},
     each_once,
     front::EXACT_MSE,
@@ -97,9 +98,9 @@ impl Results<Along> {
             Line::new(*method, points)
         };
         let rows = self.measured.rows.iter();
-        let mut methods = each_once(rows.map(|r| r.method.as_str()));
-        methods.retain(|m| !is_exact(m));
-        let lines: Vec<Line> = methods.iter().map(line).collect();
+        let methods = each_once(rows.map(|r| r.method.as_str()));
+        let shown = methods.iter().filter(|m| !is_exact(m));
+        let lines: Vec<Line> = shown.map(line).collect();
         line_chart(&lines, "frame", y, Scale::Linear)
     }
 
@@ -136,11 +137,9 @@ impl Results<Along> {
         )
     }
 
-    fn page(&self, folder: &Path) -> Result<String, ReportError> {
+    fn page(&self, folder: &Path) -> Result<String, EvalError> {
         let rows = self.measured.rows.iter();
         let scenes = each_once(rows.map(|r| r.scene.as_str()));
-        let by_scene = scenes.iter().map(|scene| self.of_scene(scene, folder));
-        let by_scene = by_scene.collect::<Result<Vec<Markup>, _>>()?;
         let body = html! {
             p { "Scenes: " (scenes.len()) ". " (self.settings()) ". The camera moves on an arc, and every object swings." }
             h2 { "All scenes" }
@@ -149,13 +148,13 @@ impl Results<Along> {
             (page::chart("curve", &self.error_chart()))
             (page::chart("curve", &self.change_chart()))
             h2 { "Scene by scene" }
-            @for scene in &by_scene { (scene) }
+            @for scene in &scenes { (self.of_scene(scene, folder)?) }
         };
         let title = "Errors along a path";
         Ok(page::page(self, title, body, &[], Some(SORT_SCRIPT)))
     }
 
-    fn of_scene(&self, scene: &str, folder: &Path) -> Result<Markup, ReportError> {
+    fn of_scene(&self, scene: &str, folder: &Path) -> Result<Markup, EvalError> {
         let table = self.table_of(Some(scene));
         let methods = table.rows.iter().map(|row| row[0].as_str());
         let mut strips = Vec::new();

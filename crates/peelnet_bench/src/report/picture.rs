@@ -1,17 +1,13 @@
-use crate::report::ReportError;
+use crate::EvalError;
 use base64::{Engine as _, engine::general_purpose::STANDARD};
 use image::{DynamicImage, ImageFormat, imageops::FilterType};
 use maud::{Markup, html};
 use std::{io::Cursor, path::Path};
 
 /// A picture file; `None` where it does not exist.
-pub(crate) fn read(path: &Path) -> Result<Option<DynamicImage>, ReportError> {
-    if !path.exists() {
-        return Ok(None);
-    }
-    let picture = image::open(path);
-    let failed = ReportError::at(path, "cannot read the picture");
-    picture.map(Some).map_err(failed)
+pub(crate) fn read(path: &Path) -> Result<Option<DynamicImage>, EvalError> {
+    let picture = path.exists().then(|| image::open(path)).transpose();
+    picture.map_err(EvalError::io(path, "read the picture"))
 }
 
 /// A picture as `data:` URI, shrunk to at most `width` pixels; `path` is where it came from, for errors.
@@ -19,21 +15,16 @@ pub(crate) fn data_uri(
     path: &Path,
     picture: &DynamicImage,
     width: u32,
-) -> Result<String, ReportError> {
-    let shrunk;
-    let picture = if picture.width() > width {
-        shrunk = picture.resize(width, u32::MAX, FilterType::Triangle);
-        &shrunk
-    } else {
-        picture
+) -> Result<String, EvalError> {
+    let shown = match picture.width() > width {
+        true => &picture.resize(width, u32::MAX, FilterType::Triangle),
+        false => picture,
     };
     let mut png = Cursor::new(Vec::new());
-    let written = picture.to_rgb8().write_to(&mut png, ImageFormat::Png);
-    written.map_err(ReportError::at(path, "cannot shrink the picture"))?;
-    Ok(format!(
-        "data:image/png;base64,{}",
-        STANDARD.encode(png.get_ref())
-    ))
+    let written = shown.to_rgb8().write_to(&mut png, ImageFormat::Png);
+    written.map_err(EvalError::io(path, "shrink the picture"))?;
+    let text = STANDARD.encode(png.get_ref());
+    Ok(format!("data:image/png;base64,{text}"))
 }
 
 pub(crate) fn figure(uri: &str, caption: &str) -> Markup {
@@ -51,10 +42,7 @@ pub(crate) fn figure_of(
     path: &Path,
     width: u32,
     caption: &str,
-) -> Result<Option<Markup>, ReportError> {
-    let Some(picture) = read(path)? else {
-        return Ok(None);
-    };
-    let uri = data_uri(path, &picture, width)?;
-    Ok(Some(figure(&uri, caption)))
+) -> Result<Option<Markup>, EvalError> {
+    let uri = read(path)?.map(|picture| data_uri(path, &picture, width));
+    Ok(uri.transpose()?.map(|uri| figure(&uri, caption)))
 }

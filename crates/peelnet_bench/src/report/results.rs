@@ -1,5 +1,4 @@
-use crate::Machine;
-use crate::report::{ReportError, write_file};
+use crate::{EvalError, Machine, report::write_file};
 use peelnet_core::files::printable_json;
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use std::path::Path;
@@ -21,7 +20,7 @@ pub struct Results<T> {
 
 /// Names and texts of files, which take pictures from `images/` in their folder.
 pub type Files<T> = &'static [(&'static str, Text<T>)];
-type Text<T> = fn(&Results<T>, &Path) -> Result<String, ReportError>;
+type Text<T> = fn(&Results<T>, &Path) -> Result<String, EvalError>;
 
 /// A measurement that is written as a folder of files.
 pub trait Measurement: Serialize + Sized + 'static {
@@ -54,10 +53,7 @@ impl<T: Measurement> Results<T> {
     }
 
     /// Writes the files into a folder; pages show the pictures in `images/` in it.
-    ///
-    /// # Errors
-    /// If a file cannot be written, or a picture not be read.
-    pub fn write(&self, folder: &Path) -> Result<(), ReportError> {
+    pub fn write(&self, folder: &Path) -> Result<(), EvalError> {
         for (name, text) in T::FILES {
             let text = text(self, folder)?;
             // A chart of nothing is left out.
@@ -68,7 +64,7 @@ impl<T: Measurement> Results<T> {
         Ok(())
     }
 
-    pub(crate) fn json(&self, _: &Path) -> Result<String, ReportError> {
+    pub(crate) fn json(&self, _: &Path) -> Result<String, EvalError> {
         let json = serde_json::to_string_pretty(self)
             .expect("results have string keys only, and floats serialise always");
         Ok(printable_json(&format!("{json}\n")).into_owned())
@@ -77,15 +73,13 @@ impl<T: Measurement> Results<T> {
 
 impl<T: DeserializeOwned> Results<T> {
     /// Reads what was written as JSON: a file, or the `results.json` in a folder.
-    ///
-    /// # Errors
-    /// A file that cannot be read, or that holds something else.
-    pub fn read(path: &Path) -> Result<Self, ReportError> {
+    pub fn read(path: &Path) -> Result<Self, EvalError> {
         let file = path.join("results.json");
         let path = if path.is_dir() { &*file } else { path };
         let bytes = peelnet_core::files::read(path, MAX_BYTES);
-        let bytes = bytes.map_err(ReportError::at(path, "cannot read"))?;
+        let bytes = bytes.map_err(EvalError::io(path, "read"))?;
         let read = serde_json::from_slice(&bytes);
-        read.map_err(ReportError::at(path, "not a result of this kind"))
+        let place = format!("{}: not a result of this kind", path.display());
+        read.map_err(EvalError::at(place))
     }
 }

@@ -13,13 +13,11 @@ impl Measurement for Scaling {
         ("scaling.csv", |r, _| Ok(csv(&r.measured.rows))),
         ("scaling.md", |r, _| Ok(r.markdown())),
         ("scaling-fragments.svg", |r, _| {
-            Ok(r.chart(Series::Fragments, "fragments per pixel"))
+            Ok(r.chart(Series::Fragments))
         }),
-        ("scaling-pixels.svg", |r, _| {
-            Ok(r.chart(Series::Pixels, "pixels"))
-        }),
+        ("scaling-pixels.svg", |r, _| Ok(r.chart(Series::Pixels))),
         ("scaling-triangles.svg", |r, _| {
-            Ok(r.chart(Series::Triangles, "triangles"))
+            Ok(r.chart(Series::Triangles))
         }),
     ];
 }
@@ -41,9 +39,9 @@ impl Results<Scaling> {
 
     fn markdown(&self) -> String {
         let left_out = self.measured.left_out.iter();
-        let left_out: String = left_out
-            .map(|l| format!("- {} at {} {}: {}\n", l.method, l.value, l.series, l.why))
-            .collect();
+        let left_out =
+            left_out.map(|l| format!("- {} at {} {}: {}\n", l.method, l.value, l.series, l.why));
+        let left_out: String = left_out.collect();
         format!(
             "{}\nExponents fitted to the upper half of the steps. {}\n\nNot measured:\n\n{left_out}",
             self.table().markdown(),
@@ -51,7 +49,7 @@ impl Results<Scaling> {
         )
     }
 
-    fn chart(&self, series: Series, x: &str) -> String {
+    fn chart(&self, series: Series) -> String {
         let mut lines: Vec<Line> = Vec::new();
         for row in self.measured.rows.iter().filter(|r| r.series == series) {
             let point = (row.value as f64, row.time_ms);
@@ -60,6 +58,7 @@ impl Results<Scaling> {
                 None => lines.push(Line::new(&row.method, [point])),
             }
         }
+        let x = ["fragments per pixel", "pixels", "triangles"][series as usize];
         line_chart(&lines, x, "frame time, ms", Scale::Logarithmic).on_white()
     }
 }

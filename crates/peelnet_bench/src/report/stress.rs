@@ -22,16 +22,13 @@ impl Results<Stressed> {
     pub fn matrix(&self) -> Table {
         let rows = &self.measured.rows;
         let methods = each_once(rows.iter().map(|r| r.method.as_str()));
-        let ids = CASES.iter().map(|c| c.id);
-        let ids: Vec<&str> = ids
-            .filter(|id| rows.iter().any(|r| r.case == *id))
-            .collect();
+        let is_drawn = |id: &&str| rows.iter().any(|r| r.case == *id);
+        let ids: Vec<&str> = CASES.iter().map(|c| c.id).filter(is_drawn).collect();
         let columns = ids.iter().map(|id| (*id).to_owned());
         Table::matrix("method", columns, &methods, |method, k| {
             let count = |result| {
-                let of = self.measured.rows_with(result);
-                of.filter(|r| r.method == method && r.case == ids[k])
-                    .count()
+                let own = |r: &&Row| r.method == method && r.case == ids[k];
+                self.measured.rows_with(result).filter(own).count()
             };
             match [Outcome::Pass, Outcome::Declared, Outcome::Fail].map(count) {
                 [0, 0, 0] => String::new(),
@@ -72,15 +69,13 @@ impl Results<Stressed> {
         let names =
             |rows: &[&Row], of: fn(&Row) -> &str| each_once(rows.iter().map(|r| of(r))).join(", ");
         let lines = groups.iter().map(|((property, reason), rows)| {
-            let excess = rows
-                .iter()
-                .map(|r| r.value.unwrap_or(f64::INFINITY) / r.limit);
+            let excess = |r: &&Row| r.value.unwrap_or(f64::INFINITY) / r.limit;
             vec![
                 property.to_string(),
                 names(rows, |r| &r.method),
                 names(rows, |r| &r.case),
                 (*reason).to_owned(),
-                format!("{:.1}", excess.fold(0.0, f64::max)),
+                format!("{:.1}", rows.iter().map(excess).fold(0.0, f64::max)),
             ]
         });
         let headings = ["property", "methods", "cases", "why", "worst / limit"];
@@ -98,10 +93,10 @@ impl Results<Stressed> {
     fn markdown(&self) -> String {
         let matrix = [("Methods and cases", self.matrix())].into_iter();
         let matrix = matrix.filter(|(_, table)| !table.rows.is_empty());
-        let sections = matrix.chain(self.exceptions());
-        let sections: String = sections
-            .map(|(title, table)| format!("\n## {title}\n\n{}", table.markdown()))
-            .collect();
+        let mut sections = String::new();
+        for (title, table) in matrix.chain(self.exceptions()) {
+            sections += &format!("\n## {title}\n\n{}", table.markdown());
+        }
         format!(
             "# Stress cases\n\n{}. In the table · is a case whose properties hold, d a number of known failures, F of failures.\n{sections}\n{}\n",
             self.measured.summary(),
@@ -161,10 +156,8 @@ mod tests {
         let matrix = results.matrix();
         assert_eq!(matrix.headings, ["method", "deep", "far"]);
         assert_eq!(matrix.rows, [["a", "d1", "·"], ["b", "d1", "F1"]]);
-        assert_eq!(
-            results.known_failures().rows,
-            [["hull", "a, b", "deep", "rounds", "2.0"]]
-        );
+        let known = results.known_failures().rows;
+        assert_eq!(known, [["hull", "a, b", "deep", "rounds", "2.0"]]);
         let dir = tempfile::tempdir().unwrap();
         let page = written(dir.path(), &results);
         assert!(page.contains("pixel &lt;3&gt;") && !page.contains("pixel <3>"));

@@ -1,5 +1,7 @@
+pub(crate) use crate::rows::tests::row;
+
+use crate::Machine;
 use crate::report::{Measurement, Results};
-use crate::{Machine, Row};
 use serde::de::DeserializeOwned;
 use serde_json::json;
 use std::path::Path;
@@ -8,17 +10,6 @@ pub(crate) fn machine() -> Machine {
     Machine {
         cpu: "a <fast> one".into(),
         ..Machine::default()
-    }
-}
-
-pub(crate) fn row(scene: &str, method: &str, mse255: f64) -> Row {
-    Row {
-        method: method.to_owned(),
-        scene: scene.to_owned(),
-        mse_linear: mse255 / 65025.0,
-        mse255,
-        bytes_per_pixel: Some(10.0),
-        ..Row::default()
     }
 }
 

@@ -4,7 +4,7 @@ use super::{
     Case, Work, network,
     trial::{Stack, Trial},
 };
-use crate::stage::quad;
+use crate::stage::rectangle;
 use glam::Vec3;
 use peelnet_core::{fragment::Fragment, guards::EMISSIVE_ALPHA};
 use peelnet_scene::{Camera, Light, Lighting, Material, Object, Source, suite};
@@ -314,16 +314,15 @@ pub const CASES: &[Case] = &[
             let base = trial.scene.views[0];
             // At distance 3 a frame of 90° is 6 units high.
             let tenth = 6.0 / trial.size[1] as f32 / 10.0;
-            trial.scene.views = (0..12)
-                .map(|i| {
-                    let step = Vec3::new(tenth * i as f32, 0.5 * tenth * i as f32, 0.0);
-                    Camera {
-                        position: base.position + step,
-                        target: base.target + step,
-                        ..base
-                    }
-                })
-                .collect();
+            let view = |i: u8| {
+                let step = Vec3::new(tenth * f32::from(i), 0.5 * tenth * f32::from(i), 0.0);
+                Camera {
+                    position: base.position + step,
+                    target: base.target + step,
+                    ..base
+                }
+            };
+            trial.scene.views = (0..12).map(view).collect();
             trial.moves = true;
             vec![trial]
         }),
@@ -335,15 +334,10 @@ pub const CASES: &[Case] = &[
         work: Work::Frames(|| {
             let steps = (0..5).map(|i| {
                 let t = (i as f32 - 2.0) * 0.003;
-                let v = |x: f32, y: f32, z: f32| Vec3::new(x, y, -z);
                 // From one depth on the left to another on the right.
                 let wall = |l: f32, r: f32| {
-                    quad([
-                        v(-2.0, -2.0, l),
-                        v(2.0, -2.0, r),
-                        v(2.0, 2.0, r),
-                        v(-2.0, 2.0, l),
-                    ])
+                    let vertex = |(x, depth): (f32, f32), y: f32| Vec3::new(x, y, -depth);
+                    rectangle([(-2.0, l), (2.0, r)], [-2.0, 2.0], vertex)
                 };
                 // Leaning by a fifth of a unit, so that the line in which it meets the other one wanders over the frame.
                 let leaning = wall(2.95 + t, 3.05 + t);
@@ -354,11 +348,11 @@ pub const CASES: &[Case] = &[
                     object("far", wall(5.0, 5.0), [0.2, 0.9, 0.3], 0.5),
                 ]
             });
-            let frames = steps.map(|objects| Trial {
+            let frame = |objects| Trial {
                 moves: true,
                 ..Trial::rasterised("passing", NARROW, objects)
-            });
-            frames.collect()
+            };
+            steps.map(frame).collect()
         }),
     },
 ];
@@ -376,9 +370,8 @@ fn rainbow(layers: &[(f32, f32)]) -> Vec<Fragment> {
         [t.fract(), (2.3 * t).fract(), 1.0 - t.fract()]
     };
     let layers = layers.iter().enumerate();
-    layers
-        .map(|(i, &(depth, alpha))| Fragment::new(depth, alpha, color(i)))
-        .collect()
+    let fragments = layers.map(|(i, &(depth, alpha))| Fragment::new(depth, alpha, color(i)));
+    fragments.collect()
 }
 
 fn stack(name: &str, layers: Vec<(f32, f32)>) -> Stack {
@@ -387,12 +380,11 @@ fn stack(name: &str, layers: Vec<(f32, f32)>) -> Stack {
 
 /// `n` layers from one depth to another; `alpha` gets the position of each, 0 … 1.
 fn even(n: usize, from: f32, to: f32, alpha: impl Fn(f32) -> f32) -> Vec<(f32, f32)> {
-    (0..n)
-        .map(|i| {
-            let t = i as f32 / (n - 1) as f32;
-            (from + (to - from) * t, alpha(t))
-        })
-        .collect()
+    let layer = |i: usize| {
+        let t = i as f32 / (n - 1) as f32;
+        (from + (to - from) * t, alpha(t))
+    };
+    (0..n).map(layer).collect()
 }
 
 /// Layers of which all together cover 0.95, drawn in an order that says nothing of their depths.
@@ -441,16 +433,16 @@ fn object<const N: usize>(
 
 /// Five quads that stand across one another like the leaves of a book, before a sixth.
 fn crossing() -> Trial {
-    let mut objects: Vec<Object> = (0..5)
-        .map(|i| {
-            let (sin, cos) = (0.3 + 0.6 * i as f32).sin_cos();
-            let v = |s: f32, y: f32| Vec3::new(1.6 * s * cos, 1.4 * y, -3.0 + 1.6 * s * sin);
-            let leaf = quad([v(-1.0, -1.0), v(1.0, -1.0), v(1.0, 1.0), v(-1.0, 1.0)]);
-            let t = i as f32 / 5.0;
-            let (color, alpha) = ([t, 1.0 - t, (3.0 * t).fract()], 0.3 + 0.12 * i as f32);
-            object(&format!("leaf {i}"), leaf, color, alpha)
-        })
-        .collect();
+    let leaf = |i: u8| {
+        let i = f32::from(i);
+        let (sin, cos) = (0.3 + 0.6 * i).sin_cos();
+        let v = |s: f32, y: f32| Vec3::new(1.6 * s * cos, 1.4 * y, -3.0 + 1.6 * s * sin);
+        let leaf = rectangle([-1.0, 1.0], [-1.0, 1.0], v);
+        let t = i / 5.0;
+        let (color, alpha) = ([t, 1.0 - t, (3.0 * t).fract()], 0.3 + 0.12 * i);
+        object(&format!("leaf {i}"), leaf, color, alpha)
+    };
+    let mut objects: Vec<Object> = (0..5).map(leaf).collect();
     let v = |x: f32, y: f32| Vec3::new(x, y, -6.0);
     let wall = [[v(-4.0, -5.0), v(5.0, -4.0), v(0.0, 5.0)]];
     objects.push(object("wall", wall, [0.9, 0.8, 0.1], 0.7));
@@ -462,13 +454,10 @@ fn cycle() -> Trial {
     let bar = |i: usize| {
         let turn = glam::Quat::from_rotation_z(i as f32 * std::f32::consts::TAU / 3.0);
         // One end in front, the other behind.
-        let v = |x: f32, y: f32, z: f32| turn * Vec3::new(x, y, 0.0) - Vec3::Z * z;
-        let bar = quad([
-            v(-1.6, -0.9, 2.6),
-            v(1.6, -0.9, 3.4),
-            v(1.6, -0.2, 3.4),
-            v(-1.6, -0.2, 2.6),
-        ]);
+        let ends = [(-1.6, 2.6), (1.6, 3.4)];
+        let bar = rectangle(ends, [-0.9, -0.2], |(x, depth), y| {
+            turn * Vec3::new(x, y, 0.0) - Vec3::Z * depth
+        });
         let color = [[0.9, 0.1, 0.1], [0.1, 0.8, 0.2], [0.1, 0.2, 0.9]][i];
         object(&format!("bar {i}"), bar, color, 0.6)
     };

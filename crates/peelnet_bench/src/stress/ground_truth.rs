@@ -55,13 +55,8 @@ fn clip_from_world(camera: &Camera, size: [u32; 2]) -> DMat4 {
 
 /// A triangle's vertices in world space, as they are uploaded.
 fn world(object: &Object, triangle: [u32; 3]) -> [DVec3; 3] {
-    triangle.map(|i| {
-        let position = object.mesh.positions[i as usize];
-        object
-            .world_from_object
-            .transform_point3(position)
-            .as_dvec3()
-    })
+    let positions = triangle.map(|i| object.mesh.positions[i as usize]);
+    positions.map(|p| object.world_from_object.transform_point3(p).as_dvec3())
 }
 
 /// What a view's pixels hold. Those on edges are not compared, nor those with materials that need textures.
@@ -73,10 +68,8 @@ pub(super) fn truth(scene: &Scene, camera: &Camera, size: [u32; 2]) -> Truth {
     let offsets = [-1.0, 0.0, 1.0].map(|x| [-1.0, 0.0, 1.0].map(|y| [SNAP * x, SNAP * y]));
     let mut offsets = offsets.concat();
     offsets.swap(0, 4);
-    let frames: Vec<scanline::Frame> = offsets
-        .iter()
-        .map(|&offset| scanline::rasterise(&triangles, width, height, offset))
-        .collect();
+    let frame = |&offset: &[f64; 2]| scanline::rasterise(&triangles, width, height, offset);
+    let frames: Vec<scanline::Frame> = offsets.iter().map(frame).collect();
     let outlines = outlines(scene, camera, size);
     let mut truth = Truth::default();
     for (i, &outlined) in outlines.iter().enumerate() {
@@ -264,9 +257,8 @@ impl<'a> View<'a> {
 
 fn material(object: &Object, triangle: usize) -> Option<&Material> {
     let mut parts = object.mesh.parts.iter();
-    object
-        .materials
-        .get(parts.position(|p| p.triangles.contains(&triangle))?)
+    let part = parts.position(|p| p.triangles.contains(&triangle))?;
+    object.materials.get(part)
 }
 
 /// The interpolated unit normal at a point of a triangle, world space; `None` where it vanishes.

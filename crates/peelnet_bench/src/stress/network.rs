@@ -43,12 +43,13 @@ pub(super) fn on_hostile_inputs(
 ) -> Result<(), ExportError> {
     let count = model.meta.inputs.len();
     let mut random = Random::new(6, &[]);
+    let normal = f32::MIN_POSITIVE;
     let extremes = [
         0.0,
         -0.0,
         1e-45,
         -1e-45,
-        f32::MIN_POSITIVE,
+        normal,
         1e-30,
         -1e-30,
         1e30,
@@ -60,9 +61,8 @@ pub(super) fn on_hostile_inputs(
     ];
     let mut hostile = || {
         loop {
-            let bits = f32::from_bits(
-                (random.unit() * 16_777_216.0) as u32 | (random.below(256) as u32) << 24,
-            );
+            let bits = (random.unit() * 16_777_216.0) as u32 | (random.below(256) as u32) << 24;
+            let bits = f32::from_bits(bits);
             if random.below(4) == 0 {
                 return extremes[random.below(extremes.len())];
             }
@@ -71,9 +71,8 @@ pub(super) fn on_hostile_inputs(
             }
         }
     };
-    let samples: Vec<Vec<f32>> = (0..RANDOM)
-        .map(|_| (0..count).map(|_| hostile()).collect())
-        .collect();
+    let mut sample = |_| (0..count).map(|_| hostile()).collect();
+    let samples: Vec<Vec<f32>> = (0..RANDOM).map(&mut sample).collect();
     let answers = peelnet_export::evaluate(gpu, model, &text.wgsl, &samples)?;
     let answers = answers.chunks_exact(model.meta.output.count());
     for (sample, answer) in samples.iter().zip(answers) {

@@ -294,11 +294,10 @@ fn extents(kind: &Kind) -> Vec<[f64; 2]> {
     let colors = seen.map(|f| Vec3::from(f.color).as_dvec3());
     let extent = |d: DVec3| {
         let along = colors.clone().map(|c| [d.dot(c); 2]);
-        along.reduce(|[lo, hi], [x, _]| [lo.min(x), hi.max(x)])
+        let extent = along.reduce(|[lo, hi], [x, _]| [lo.min(x), hi.max(x)]);
+        extent.unwrap_or_default()
     };
-    directions()
-        .map(|d| extent(d).unwrap_or_default())
-        .collect()
+    directions().map(extent).collect()
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! A scene with the fragments of each of its pixels: known beforehand, or found by the 64-bit reference.
 
 use super::ground_truth;
-use crate::stage::{camera, quad};
+use crate::stage::{camera, rectangle};
 use glam::Vec3;
 use peelnet_core::{
     absorbance::absorbance,
@@ -97,15 +97,11 @@ impl Kind {
         let brightest = own.fold(0.0f64, |m, (&c, c0)| {
             m.max(c - transmittance * f64::from(c0))
         });
-        let covered = transmittance < 1.0;
+        let mean = (transmittance < 1.0).then(|| brightest / (1.0 - transmittance));
         Self {
             exact,
             transmittance,
-            mean: if covered {
-                brightest / (1.0 - transmittance)
-            } else {
-                0.0
-            },
+            mean: mean.unwrap_or_default(),
             uncertainty: 0.0,
             absorbance: fragments.iter().map(|f| absorbance(f.alpha)).sum(),
             name,
@@ -181,14 +177,8 @@ impl Trial {
                 // 90° high: half the height at depth z is z.
                 let x = |pixel: u32| (2.0 * pixel as f32 / width - 1.0) * z * width / height;
                 let y = |pixel: u32| (1.0 - 2.0 * pixel as f32 / height) * z;
-                let v = |px: u32, py: u32| Vec3::new(x(px), y(py), -z);
-                let (right, bottom) = (left + cover, top + cover);
-                quad([
-                    v(left, bottom),
-                    v(right, bottom),
-                    v(right, top),
-                    v(left, top),
-                ])
+                let vertex = |px: u32, py: u32| Vec3::new(x(px), y(py), -z);
+                rectangle([left, left + cover], [top + cover, top], vertex)
             };
             let mut fragments = Vec::new();
             for layer in &stack.layers {

@@ -85,22 +85,17 @@ pub(super) fn run(context: &Context<'_>, args: &DesignsArgs) -> Result<(), Failu
         });
     }
     drop(bar);
+    let reference = |(name, measured): &(&str, Vec<Measured>)| Reference {
+        method: (*name).to_owned(),
+        score: score(measured),
+    };
     let found = Designs {
-        file: match &args.file {
-            Some(path) => json_path(path),
-            None => DESIGNS.to_owned(),
-        },
+        file: (args.file.as_deref()).map_or_else(|| DESIGNS.to_owned(), json_path),
         trained_on,
         judged_on: scenes.iter().map(|s| s.name.clone()).collect(),
         learning_rate: configs[0].learning_rate,
         epochs: configs[0].epochs,
-        references: references
-            .iter()
-            .map(|(name, measured)| Reference {
-                method: (*name).to_owned(),
-                score: score(measured),
-            })
-            .collect(),
+        references: references.iter().map(reference).collect(),
         rows,
     };
     report(context, &gpu, &args.out, found, |r| r.table().plain())
@@ -116,10 +111,7 @@ fn config(entry: &Entry, args: &DesignsArgs) -> Config {
     }
 }
 
-/// The scenes that are trained on.
-///
-/// # Errors
-/// A scene that would judge and is trained on.
+/// The scenes that are trained on; none of them may judge.
 fn check_scenes(
     context: &Context<'_>,
     scenes: &[Scene],

@@ -2,7 +2,7 @@
 
 pub(crate) mod page;
 
-use crate::chart::{Bubble, Svg, bubble_chart};
+use crate::chart::{Svg, bubble_chart};
 use crate::report::{
     Files, Measurement, Results, Table,
     files::csv,
@@ -10,8 +10,8 @@ use crate::report::{
 };
 use crate::{
     bench::Bench,
-    front::{self, BASE, EXACT_MSE, Mean, Point, untimed},
-    rows::{Bytes, MOMENTS, Rows, WEIGHTED},
+    front::{self, BASE, Mean, Point, untimed},
+    rows::{MOMENTS, Rows, WEIGHTED},
 };
 
 /// Headings of errors over those of [`WEIGHTED`] and [`MOMENTS`], and of times over those of [`BASE`].
@@ -38,7 +38,7 @@ impl Measurement for Bench {
 
 impl Results<Bench> {
     fn chart(&self, mean: Mean) -> Svg {
-        chart(&front::points(&Rows::new(&self.measured.rows), mean))
+        bubble_chart(&front::points(&Rows::new(&self.measured.rows), mean))
     }
 
     /// Every method as ratios to the reference methods.
@@ -52,29 +52,26 @@ impl Results<Bench> {
             Some(format!("{x:.2} ({scene})"))
         };
         let dash = || "–".to_owned();
+        let error = |m, to| number(rows.error_ratio(m, to), 3);
+        let time = |m, to| number(rows.time_ratio(m, to), 3);
+        let behind = |m, of: fn(&Point) -> f64| number(point(m).map(of), 2);
         Table::from_rows(
             &rows.methods(),
             &[
                 ("method", &|m| (*m).to_owned()),
                 ("MSE (linear)", &|m| mse(rows.error_of(m))),
-                (TO_WEIGHTED, &|m| number(rows.error_ratio(m, WEIGHTED), 3)),
-                (TO_MOMENTS, &|m| number(rows.error_ratio(m, MOMENTS), 3)),
+                (TO_WEIGHTED, &|m| error(m, WEIGHTED)),
+                (TO_MOMENTS, &|m| error(m, MOMENTS)),
                 ("worst scene / mboit4", &|m| worst(m).unwrap_or_else(dash)),
-                (TO_BASE, &|m| number(rows.time_ratio(m, BASE), 3)),
-                ("time / mboit4", &|m| number(rows.time_ratio(m, MOMENTS), 3)),
-                ("time / wboit-eq9", &|m| {
-                    number(rows.time_ratio(m, WEIGHTED), 3)
-                }),
+                (TO_BASE, &|m| time(m, BASE)),
+                ("time / mboit4", &|m| time(m, MOMENTS)),
+                ("time / wboit-eq9", &|m| time(m, WEIGHTED)),
                 ("bytes a pixel (mean, median, most)", &|m| {
                     let own = rows.of_method(m).bytes();
-                    own.map_or_else(dash, |b| bytes(&b))
+                    own.map_or_else(dash, |b| b.text())
                 }),
-                (TIME_TO_FRONT, &|m| {
-                    number(point(m).map(|p| p.time_at_equal_error), 2)
-                }),
-                (ERROR_TO_FRONT, &|m| {
-                    number(point(m).map(|p| p.error_at_equal_time), 2)
-                }),
+                (TIME_TO_FRONT, &|m| behind(m, |p| p.time_at_equal_error)),
+                (ERROR_TO_FRONT, &|m| behind(m, |p| p.error_at_equal_time)),
             ],
         )
     }
@@ -106,14 +103,13 @@ impl Results<Bench> {
 
     fn markdown(&self) -> String {
         let rows = Rows::new(&self.measured.rows);
-        let untimed = untimed(&rows);
-        let why = untimed
-            .iter()
-            .map(|(method, why)| format!(" {method} has no time: {why}."));
+        let mut reasons = String::new();
+        for (method, why) in untimed(&rows) {
+            reasons += &format!(" {method} has no time: {why}.");
+        }
         format!(
-            "{}\nErrors against `abuffer` in linear light over the whole frame, geometric means over scenes and views.{} {}\n\n{}",
+            "{}\nErrors against `abuffer` in linear light over the whole frame, geometric means over scenes and views.{reasons} {}\n\n{}",
             self.table().markdown(),
-            why.collect::<String>(),
             self.credit(),
             self.times_by_scene().markdown(),
         )
@@ -123,45 +119,4 @@ impl Results<Bench> {
 /// A mean squared error; 0 of an exact method.
 fn mse(error: Option<f64>) -> String {
     error.map_or_else(|| "0".to_owned(), |x| format!("{x:.2e}"))
-}
-
-/// Bytes a pixel: one number, or mean, median and most over the views.
-fn bytes(b: &Bytes) -> String {
-    if b.is_one() {
-        format!("{:.0}", b.most)
-    } else {
-        format!("{:.0}, {:.0}, {:.0}", b.mean, b.median, b.most)
-    }
-}
-
-/// Error against time, the Pareto front drawn through it, a bubble for each method as large as its bytes per pixel.
-pub(crate) fn chart(points: &[Point]) -> Svg {
-    let bubble = |p: &Point| {
-        let error = if p.is_exact() {
-            "exact".to_owned()
-        } else {
-            format!("MSE {:.2e}", p.error)
-        };
-        Bubble {
-            name: p.method.clone(),
-            title: format!(
-                "{}: {error}, {:.2} x hardware blending, {} bytes a pixel",
-                p.method,
-                p.time,
-                bytes(&p.bytes)
-            ),
-            x: p.time,
-            y: p.error,
-            weight: p.bytes.mean,
-            on_front: p.on_front,
-        }
-    };
-    let bubbles: Vec<Bubble> = points.iter().map(bubble).collect();
-    let x = if points.iter().any(|p| p.method == BASE) {
-        "time, times hardware blending without sorting"
-    } else {
-        "time, milliseconds"
-    };
-    let y = "mean squared error, linear light";
-    bubble_chart(&bubbles, x, y, (EXACT_MSE, "exact"))
 }

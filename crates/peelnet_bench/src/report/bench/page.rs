@@ -1,14 +1,15 @@
 //! The page of a bench: charts, tables that sort, pictures with difference maps.
 
-use super::{ERROR_TO_FRONT, TIME_TO_FRONT, TO_BASE, TO_MOMENTS, TO_WEIGHTED, bytes, chart, mse};
+use super::{ERROR_TO_FRONT, TIME_TO_FRONT, TO_BASE, TO_MOMENTS, TO_WEIGHTED, mse};
+use crate::chart::bubble_chart;
 use crate::report::{
-    ReportError, Results, Table,
+    Results, Table,
     page::{self, SORT_SCRIPT},
     picture::{data_uri, figure, read},
     table::{number, scene_heading},
 };
 use crate::{
-    Row,
+    EvalError, Row,
     bench::Bench,
     compare::{EXACT, image_name},
     front::{self, Mean, Point},
@@ -23,16 +24,12 @@ const PICTURE_WIDTH: u32 = 256;
 const MAGNIFIED: u16 = 8;
 
 /// The whole page. In the folder, `images` holds `<scene>-<method>.png`.
-pub(super) fn page(results: &Results<Bench>, folder: &Path) -> Result<String, ReportError> {
+pub(super) fn page(results: &Results<Bench>, folder: &Path) -> Result<String, EvalError> {
     let images = &folder.join("images");
     let rows = &Rows::new(&results.measured.rows);
     let scenes = rows.scenes();
     let all = front::points(rows, Mean::Geometric);
     let by_size = front::points(rows, Mean::Arithmetic);
-    let by_scene = scenes
-        .iter()
-        .map(|scene| of_scene(&results.measured, scene, images))
-        .collect::<Result<Vec<Markup>, _>>()?;
     let views = rows.of_method(EXACT).0.len();
     let body = html! {
         p {
@@ -43,7 +40,7 @@ pub(super) fn page(results: &Results<Bench>, folder: &Path) -> Result<String, Re
             "Geometric means over scenes and views. Each bubble is a method with its settings: point at it for its figures; its area grows \
              with its bytes per pixel. No method is both faster and more accurate than one on the front (orange)."
         }
-        (page::chart("chart", &chart(&all)))
+        (page::chart("chart", &bubble_chart(&all)))
         (points_table(rows, &all))
         (untimed(rows))
         h2 { "All scenes, arithmetic means" }
@@ -51,12 +48,12 @@ pub(super) fn page(results: &Results<Bench>, folder: &Path) -> Result<String, Re
             "Arithmetic means of the errors: a method that is nearly exact on many scenes and wrong on one ranks lower here than by \
              geometric means."
         }
-        (page::chart("chart", &chart(&by_size)))
+        (page::chart("chart", &bubble_chart(&by_size)))
         h2 { "Time scene by scene" }
         p.note { "Times / hardware blending. Where few fragments overlap, exact methods cost little; where smoke fills the frame, much." }
         (results.times_by_scene().html("sortable", |_| false))
         h2 { "Scene by scene" }
-        @for scene in &by_scene { (scene) }
+        @for scene in &scenes { (of_scene(&results.measured, scene, images)?) }
         h2 { "Time by pass" }
         p.note { "Milliseconds, geometric means over scenes and views." }
         (passes(rows, &all).html("text", |_| false))
@@ -72,15 +69,13 @@ pub(super) fn page(results: &Results<Bench>, folder: &Path) -> Result<String, Re
     };
     let load = |x: Option<f64>| x.map_or_else(|| "unknown".to_owned(), |x| format!("{x:.2}"));
     let [before, after] = results.measured.load.map(load);
-    let more = [(
-        "load before and after".to_owned(),
-        format!("{before}, {after}"),
-    )];
+    let load = format!("{before}, {after}");
+    let more = [("load before and after".to_owned(), load)];
     let title = "Error against time";
     Ok(page::page(results, title, body, &more, Some(SORT_SCRIPT)))
 }
 
-fn of_scene(bench: &Bench, scene: &str, images: &Path) -> Result<Markup, ReportError> {
+fn of_scene(bench: &Bench, scene: &str, images: &Path) -> Result<Markup, EvalError> {
     let own = Rows::new(&bench.rows).of_scene(scene);
     let points = front::points(&own, Mean::Geometric);
     let first = own.of_method(EXACT).0.first().copied();
@@ -98,7 +93,7 @@ fn of_scene(bench: &Bench, scene: &str, images: &Path) -> Result<Markup, ReportE
                 "View 0: " (count(fragments)) " fragments, at most " (count(most.map(u64::from))) " in a pixel, "
                 (format!("{mean_depth:.2}")) " per pixel on average."
             }
-            (page::chart("chart", &chart(&points)))
+            (page::chart("chart", &bubble_chart(&points)))
             (points_table(&own, &points))
             (gallery(scene, shown, images, PICTURE_WIDTH)?)
         }
@@ -129,7 +124,7 @@ pub(crate) fn points_table(rows: &Rows<'_>, points: &[Point]) -> Markup {
             ("T error", &|p| mean(p, |r| r.transmittance_error, 4)),
             ("contour pairs", &|p| mean(p, |r| r.contour_pairs, 5)),
             ("passes", &|p| most_passes(rows, &p.method)),
-            ("bytes a pixel", &|p| bytes(&p.bytes)),
+            ("bytes a pixel", &|p| p.bytes.text()),
             (TIME_TO_FRONT, &|p| number(Some(p.time_at_equal_error), 2)),
             (ERROR_TO_FRONT, &|p| number(Some(p.error_at_equal_time), 2)),
         ],
@@ -180,10 +175,8 @@ fn passes(rows: &Rows<'_>, points: &[Point]) -> Table {
                 }
             }
         }
-        let parts: Vec<String> = times
-            .into_iter()
-            .filter_map(|(name, t)| Some(format!("{name} {:.2}", geometric_mean(t)?)))
-            .collect();
+        let part = |(name, t): (&str, Vec<f64>)| Some(format!("{name} {:.2}", geometric_mean(t)?));
+        let parts: Vec<String> = times.into_iter().filter_map(part).collect();
         vec![p.method.clone(), parts.join(" · ")]
     };
     Table::new(["method", "passes"], points.iter().map(line))
@@ -195,7 +188,7 @@ pub(crate) fn gallery<'a>(
     points: impl IntoIterator<Item = &'a Point>,
     folder: &Path,
     width: u32,
-) -> Result<Markup, ReportError> {
+) -> Result<Markup, EvalError> {
     let file = |method: &str| folder.join(image_name(scene, method));
     let Some(exact) = read(&file(EXACT))? else {
         return Ok(Markup::default());
@@ -209,18 +202,15 @@ pub(crate) fn gallery<'a>(
             continue;
         };
         let map = DynamicImage::ImageRgb8(difference(&exact, &picture.to_rgb8()));
-        let (picture, map) = (
-            data_uri(&path, &picture, width)?,
-            data_uri(&path, &map, width)?,
-        );
+        let [picture, map] = [&picture, &map].map(|image| data_uri(&path, image, width));
         let caption = format!(
             "{}: MSE {:.2e}, {:.2} × blending",
             p.method, p.error, p.time
         );
         all.push(html! {
             div {
-                (figure(&picture, &caption))
-                (figure(&map, &format!("{}: difference × {MAGNIFIED}", p.method)))
+                (figure(&picture?, &caption))
+                (figure(&map?, &format!("{}: difference × {MAGNIFIED}", p.method)))
             }
         });
     }
@@ -259,9 +249,9 @@ mod tests {
             r.time_by_pass = format!("gather={ms} resolve=0.1");
             rows.push(r);
             let gray = (mse * 2.0) as u8;
-            RgbImage::from_pixel(8, 8, image::Rgb([gray; 3]))
-                .save(images.join(image_name("s<1>", method)))
-                .unwrap();
+            let picture = RgbImage::from_pixel(8, 8, image::Rgb([gray; 3]));
+            let path = images.join(image_name("s<1>", method));
+            picture.save(path).unwrap();
         }
         let bench = Bench {
             load: [Some(0.5), None],
@@ -275,11 +265,9 @@ mod tests {
         assert_eq!(page.matches("<circle class=\"point\"").count(), 12);
         assert_eq!(page.matches("data:image/png").count(), 7);
         assert_eq!(results.table().rows[2][4], "2.00 (s<1>, trained on)");
-        assert!(
-            page.contains("s&lt;1&gt;")
-                && page.contains("a&amp;b")
-                && page.contains("0.50, unknown")
-        );
+        for text in ["s&lt;1&gt;", "a&amp;b", "0.50, unknown"] {
+            assert!(page.contains(text), "{text}");
+        }
         assert!(!page.contains("s<1>") && !page.contains("a <fast> one"));
         assert!(page.contains("gather 2.00 · resolve 0.10"));
         assert!(!page.contains("http://www.w3.org/1999") && !page.contains("https:"));

@@ -3,22 +3,23 @@
 //! The promise is that the network's weight errs less than weighted blending with the thesis's analytic weight. The
 //! sentences state counts and ratios in both directions alike.
 
+use super::{best_published, published, ratio};
 use crate::{
     Row,
     rows::{Rows, geometric_mean},
-    thesis::{self, DEEP, best_published, ratio},
 };
+use peelnet_render::role::{THESIS_NETWORK, THESIS_WEIGHT};
 
 pub(super) fn findings<'a>(rows: &'a [Row]) -> Vec<String> {
     let rows = &Rows::new(rows);
     let mut out = Vec::new();
     let both = |scene: &&str| {
-        let methods = [DEEP, thesis::WEIGHTED];
+        let methods = [THESIS_NETWORK, THESIS_WEIGHT];
         ratio(rows, scene, methods, |r| r.mse255).is_some()
     };
     let scenes = rows.scenes().into_iter().filter(both);
     let (in_table, beyond): (Vec<&str>, Vec<&str>) =
-        scenes.partition(|scene| thesis::line(scene).is_some());
+        scenes.partition(|scene| published(scene).is_some());
     if in_table.is_empty() && beyond.is_empty() {
         return vec![
             "The learned method or weighted blending with the thesis's weight was not drawn, so nothing can be said \
@@ -27,16 +28,15 @@ pub(super) fn findings<'a>(rows: &'a [Row]) -> Vec<String> {
         ];
     }
     let ratios = |scenes: &[&'a str], reference: &str| -> Vec<(&'a str, f64)> {
-        let ratio = |scene| ratio(rows, scene, [DEEP, reference], |r| r.mse255);
+        let ratio = |scene| ratio(rows, scene, [THESIS_NETWORK, reference], |r| r.mse255);
         let scenes = scenes.iter();
         scenes.filter_map(|&s| Some((s, ratio(s)?))).collect()
     };
     if !in_table.is_empty() {
-        let (verdict, counted, list) = summary(&ratios(&in_table, thesis::WEIGHTED));
-        let theirs = in_table.iter().filter_map(|scene| thesis::line(scene));
-        let theirs: Vec<String> = theirs
-            .map(|[weighted, deep]| format!("{:.2}", deep / weighted))
-            .collect();
+        let (verdict, counted, list) = summary(&ratios(&in_table, THESIS_WEIGHT));
+        let theirs = in_table.iter().filter_map(|scene| published(scene));
+        let theirs = theirs.map(|[weighted, deep]| format!("{:.2}", deep / weighted));
+        let theirs: Vec<String> = theirs.collect();
         out.push(format!(
             "On the scenes that the thesis measured, its promise {verdict}: the learned weight has {counted} (learned / analytic: {list}; \
              the thesis reports {}).",
@@ -44,7 +44,7 @@ pub(super) fn findings<'a>(rows: &'a [Row]) -> Vec<String> {
         ));
     }
     if !beyond.is_empty() {
-        let (verdict, counted, list) = summary(&ratios(&beyond, thesis::WEIGHTED));
+        let (verdict, counted, list) = summary(&ratios(&beyond, THESIS_WEIGHT));
         out.push(format!(
             "On the scenes that the thesis did not measure, the promise {verdict}: the learned weight has {counted} ({list})."
         ));
@@ -53,7 +53,8 @@ pub(super) fn findings<'a>(rows: &'a [Row]) -> Vec<String> {
     if let Some(best) = best_published(rows) {
         let r = ratios(&all, best);
         if let Some(mean) = geometric_mean(r.iter().map(|x| x.1)) {
-            let linear = |scene: &&str| ratio(rows, scene, [DEEP, best], |r| r.mse_linear);
+            let linear =
+                |scene: &&str| ratio(rows, scene, [THESIS_NETWORK, best], |r| r.mse_linear);
             let linear = geometric_mean(all.iter().filter_map(linear));
             out.push(format!(
                 "Against the best published weight on these scenes ({best}), the learned weight has {}; geometric mean \
@@ -85,9 +86,9 @@ fn artefacts(rows: &Rows<'_>) -> String {
     let of = |method: &str, count: fn(&Row) -> u64| -> u64 {
         rows.of_method(method).0.into_iter().map(count).sum()
     };
-    let [dark, dark_weighted] = [DEEP, thesis::WEIGHTED].map(|m| of(m, |r| r.dark_pixels));
-    let broken = of(DEEP, |r| r.non_finite_pixels);
-    let covered = of(DEEP, |r| r.covered_pixels);
+    let [dark, dark_weighted] = [THESIS_NETWORK, THESIS_WEIGHT].map(|m| of(m, |r| r.dark_pixels));
+    let broken = of(THESIS_NETWORK, |r| r.non_finite_pixels);
+    let covered = of(THESIS_NETWORK, |r| r.covered_pixels);
     format!(
         "Artefacts: {dark} of {covered} covered pixels are darker than the exact image by more than a quarter of the range \
          with the learned weight, {dark_weighted} with the thesis's analytic weight; {broken} pixels of the learned \

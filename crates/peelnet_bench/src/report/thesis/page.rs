@@ -1,16 +1,16 @@
-use super::{EXPLANATION, Stage, ThesisRun};
+use super::{EXPLANATION, Stage, ThesisRun, mean};
+use crate::chart::bubble_chart;
 use crate::report::{
-    ReportError, Results, Table, bench, page,
+    Results, Table, bench, page,
     page::SORT_SCRIPT,
     picture::{data_uri, figure, read},
     table::number,
 };
 use crate::{
-    Row,
+    EvalError, Row,
     compare::image_name,
     front::{self, BASE, Mean},
     rows::Rows,
-    thesis,
 };
 use maud::{Markup, html};
 use std::path::Path;
@@ -21,7 +21,7 @@ const PICTURE_BUDGET: usize = 9_000_000;
 const WIDTHS: [u32; 5] = [512, 384, 256, 192, 128];
 
 /// The whole page. In the folder, `images` holds `<scene>-<method>.png`.
-pub(super) fn page(results: &Results<ThesisRun>, folder: &Path) -> Result<String, ReportError> {
+pub(super) fn page(results: &Results<ThesisRun>, folder: &Path) -> Result<String, EvalError> {
     let images = &folder.join("images");
     let run = &results.measured;
     let rows = Rows::new(&run.rows);
@@ -54,17 +54,12 @@ pub(super) fn page(results: &Results<ThesisRun>, folder: &Path) -> Result<String
         }
     };
     let title = "Learned transparency against the exact image";
-    Ok(page::page(
-        results,
-        title,
-        body,
-        &run.settings,
-        Some(SORT_SCRIPT),
-    ))
+    let (settings, script) = (&run.settings, Some(SORT_SCRIPT));
+    Ok(page::page(results, title, body, settings, script))
 }
 
 /// One scene with networks that were trained on none of its kind: pictures with their errors, and error against time. Nothing without rows.
-fn showcase(rows: &[Row], images: &Path) -> Result<Markup, ReportError> {
+fn showcase(rows: &[Row], images: &Path) -> Result<Markup, EvalError> {
     let Some(scene) = rows.first().map(|r| r.scene.as_str()) else {
         return Ok(Markup::default());
     };
@@ -82,7 +77,7 @@ fn showcase(rows: &[Row], images: &Path) -> Result<Markup, ReportError> {
         (pictures)
         h3 { "Error against time" }
         p.note { "The lower, the more accurate; the further left, the faster. Point at a bubble for its figures." }
-        (page::chart("chart", &bench::chart(&points)))
+        (page::chart("chart", &bubble_chart(&points)))
         (bench::page::points_table(&rows, &points))
     })
 }
@@ -118,7 +113,7 @@ fn costs(rows: &Rows<'_>) -> Table {
 }
 
 /// The pictures of every scene, as large as the budget allows.
-fn gallery(rows: &Rows<'_>, folder: &Path) -> Result<Markup, ReportError> {
+fn gallery(rows: &Rows<'_>, folder: &Path) -> Result<Markup, EvalError> {
     let (scenes, methods) = (rows.scenes(), rows.methods());
     let mut pictures = Vec::new();
     for scene in &scenes {
@@ -132,9 +127,8 @@ fn gallery(rows: &Rows<'_>, folder: &Path) -> Result<Markup, ReportError> {
     let mut encoded: Vec<String> = Vec::new();
     for width in WIDTHS {
         let all = pictures.iter();
-        encoded = all
-            .map(|(.., path, picture)| data_uri(path, picture, width))
-            .collect::<Result<_, _>>()?;
+        let all = all.map(|(.., path, picture)| data_uri(path, picture, width));
+        encoded = all.collect::<Result<_, _>>()?;
         if encoded.iter().map(String::len).sum::<usize>() <= PICTURE_BUDGET {
             break;
         }
@@ -152,7 +146,7 @@ fn gallery(rows: &Rows<'_>, folder: &Path) -> Result<Markup, ReportError> {
                 h3 { (scene) }
                 div.gallery {
                     @for ((_, method, ..), uri) in own {
-                        @let error = thesis::error(rows, scene, method, |r| r.mse255);
+                        @let error = mean(rows, scene, method, |r| r.mse255);
                         @let error = error.map_or_else(String::new, |e| format!(", MSE {e:.2}"));
                         (figure(uri, &format!("{method}{error}")))
                     }
@@ -174,9 +168,8 @@ mod tests {
         let images = dir.path().join("images");
         std::fs::create_dir(&images).unwrap();
         let picture = image::RgbImage::from_fn(640, 480, |x, y| image::Rgb([x as u8, y as u8, 7]));
-        picture
-            .save(images.join(image_name("sixteen-025", "deep-thesis")))
-            .unwrap();
+        let path = images.join(image_name("sixteen-025", "deep-thesis"));
+        picture.save(path).unwrap();
         let mut rows = vec![
             row("sixteen-025", "wboit-papakostas", 5.0),
             row("sixteen-025", "wboit-papakostas", 15.0),
