@@ -198,16 +198,19 @@ fn compare_features<C>(
     }
 }
 
-#[test]
-fn features_are_the_same_in_rust_and_wgsl() {
+fn random_pixels() -> Vec<Vec<Fragment>> {
     let mut random = Random::new(35, &[]);
     let mut layer = |_| {
         let depth = random.log_between(1.0, 100.0);
         Fragment::new(depth, random.between(0.02, 0.98), random.color())
     };
-    let pixels: Vec<Vec<Fragment>> = (0..200)
-        .map(|k| (0..3 + k % 12).map(&mut layer).collect())
-        .collect();
+    let pixel = |k| (0..3 + k % 12).map(&mut layer).collect();
+    (0..200).map(pixel).collect()
+}
+
+#[test]
+fn features_are_the_same_in_rust_and_wgsl() {
+    let pixels = random_pixels();
     let warp = DepthWarp::new(1.0, 100.0);
     let lists: Vec<_> = pixels.iter().map(|pixel| points(pixel)).collect();
     let exact = SumPrecision::Exact;
