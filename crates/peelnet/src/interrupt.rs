@@ -5,10 +5,13 @@
 
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, AtomicI32, Ordering};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
-/// What a command has to end by itself. Two seconds are promised.
-const GRACE: Duration = Duration::from_millis(1500);
+/// What a command has to end by itself. One second is promised.
+const GRACE: Duration = Duration::from_millis(600);
+
+/// What the message of an end may take: whoever reads stderr can have stopped reading.
+const MESSAGE_TIME: Duration = Duration::from_millis(100);
 
 static STOP: AtomicBool = AtomicBool::new(false);
 
@@ -51,7 +54,11 @@ fn on_signal(signal: i32) {
 fn end() -> ! {
     peelnet_core::files::remove_unfinished();
     let code = code().unwrap_or(1);
-    eprintln!("error: {MESSAGE}");
+    let message = std::thread::spawn(|| crate::console::error(MESSAGE));
+    let deadline = Instant::now() + MESSAGE_TIME;
+    while !message.is_finished() && Instant::now() < deadline {
+        std::thread::sleep(Duration::from_millis(1));
+    }
     #[cfg(unix)]
     signal_hook::low_level::exit(code.into());
     #[cfg(not(unix))]

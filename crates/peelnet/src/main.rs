@@ -3,7 +3,7 @@
 //! [`cli`] declares the flags; every command is one file of [`commands`], which calls the libraries and prints.
 //! Results go to stdout and messages to stderr, both through [`console`]; progress bars ([`progress`]) show on a
 //! terminal only. Whatever fails becomes a [`peelnet::Failure`]: one line, and the exit code 1, or 2 for wrong
-//! usage. A signal ends every command within two seconds ([`interrupt`]), and files are complete or absent. What a command writes is
+//! usage. A signal ends every command within a second ([`interrupt`]), and files are complete or absent. What a command writes is
 //! checked before it begins ([`peelnet_core::files::Outputs`]).
 
 mod cli;
@@ -19,6 +19,8 @@ use clap::Parser as _;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
+    #[cfg(target_os = "linux")]
+    set_runtime_folder();
     let cli = match cli::Cli::try_parse() {
         Ok(cli) => cli,
         Err(error) => {
@@ -42,6 +44,25 @@ fn main() -> ExitCode {
         }
     };
     interrupt::exit_code(code)
+}
+
+/// Starts the program anew with `XDG_RUNTIME_DIR` where containers leave it out: Mesa's drivers print an error of their own without it, also
+/// where nothing is wrong. A process cannot safely change its own variables.
+#[cfg(target_os = "linux")]
+fn set_runtime_folder() {
+    use std::os::unix::process::CommandExt as _;
+    const NAME: &str = "XDG_RUNTIME_DIR";
+    if std::env::var_os(NAME).is_some() {
+        return;
+    }
+    let mut arguments = std::env::args_os();
+    let mut command = std::process::Command::new("/proc/self/exe");
+    command.arg0(arguments.next().unwrap_or_default());
+    // Returns only if it fails; the message is then all that is lost.
+    let _ = command
+        .args(arguments)
+        .env(NAME, std::env::temp_dir())
+        .exec();
 }
 
 /// Whether an argument, such as the name of a file, holds what must not reach a terminal.
