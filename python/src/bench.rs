@@ -232,7 +232,7 @@ pub fn recommend<'py>(
             measured(py, scenes, &compared, plan, adapter, progress)?.rows
         }
     };
-    let (found, warning) = points_for(&rows, &scene.name);
+    let (found, warning) = points_for(&rows, &scene);
     warning.iter().try_for_each(|text| warn(py, text))?;
     let budget = Budget {
         ms: budget_ms,

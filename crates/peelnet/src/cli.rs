@@ -40,7 +40,7 @@ type OrAll<T> = Option<T>;
   peelnet recommend cups --budget-ms 30                 which method to use
 
 Results go to stdout, messages to stderr. Exit codes: 0 done, 1 failed, 2 wrong usage, 130 and 143 interrupted.
-An output replaces only a file of its own kind, any file with --force, never a link, a device or a pipe; - is stdout. A folder of a dataset replaces only a dataset.
+An output replaces only a file of its own kind that may be written, any file with --force, never a link, a device or a pipe; - is stdout. A folder of a dataset replaces only a dataset.
 NO_COLOR switches colours off."
 )]
 pub struct Cli {
@@ -70,6 +70,9 @@ pub struct Global {
     /// Let outputs replace any file, also what peelnet did not write and what the command reads
     #[arg(long, global = true)]
     pub force: bool,
+    /// A folder in which mesh files may name textures and buffers, beside their own and the scene's; may be repeated
+    #[arg(long, global = true, value_name = "DIR", hide_short_help = true)]
+    pub files_from: Vec<PathBuf>,
 }
 
 #[derive(Debug, Subcommand)]
@@ -267,7 +270,7 @@ pub struct TrainArgs {
 #[derive(Clone, Debug, Args)]
 #[command(after_help = "Examples:
   peelnet export m.safetensors --out weight.wgsl
-  peelnet export m.safetensors --out weight.glsl --lang glsl
+  peelnet export m.safetensors --out weight.glsl        .wgsl, .es.glsl, .glsl, .hlsl or .metal
 
 The functions are run on the GPU and compared with the network before a file is written. What a renderer does around them is described
 in the text's first lines, and for programs in a file of the same name that ends in .json.")]
@@ -279,8 +282,9 @@ pub struct ExportArgs {
     #[arg(long, value_name = "FILE")]
     pub out: PathBuf,
     /// Shading language: WebGPU's WGSL, GLSL ES 3.00 (WebGL 2), GLSL 4.50 (OpenGL, Vulkan), HLSL (shader model 6.0) or MSL (Metal 2.4)
-    #[arg(long, default_value = "wgsl", value_parser = one_of(LANGUAGES.to_vec()))]
-    pub lang: Language,
+    /// [default: FILE's ending says it; WGSL where it does not]
+    #[arg(long, value_parser = one_of(LANGUAGES.to_vec()))]
+    pub lang: Option<Language>,
     /// Arithmetic of the function, 32-bit or 16-bit floats
     #[arg(long, default_value = "f32", value_parser = one_of(PRECISIONS.to_vec()))]
     pub precision: Precision,

@@ -123,7 +123,7 @@ fn advice(error: &(dyn Error + 'static)) -> (bool, Option<String>) {
     } else {
         match find(error) {
             Some(EvalError::Resume { .. }) => (false, RESUME),
-            Some(EvalError::SameName { .. }) => (true, ""),
+            Some(EvalError::SameName { .. } | EvalError::SameMethod(_)) => (true, ""),
             _ => (false, ""),
         }
     };

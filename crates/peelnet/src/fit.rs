@@ -38,9 +38,12 @@ pub fn fit(
     on: &mut dyn FnMut(Step<'_>),
 ) -> Result<Outcome, Failure> {
     // Until the model has all of its metadata; before the rows are read, because that can take minutes.
-    let lock = OutputLock::take(&options.out)?;
+    let own = match options.lock {
+        Some(_) => None,
+        None => Some(OutputLock::take(&options.out)?),
+    };
     let options = &RunOptions {
-        lock: Some(&lock),
+        lock: options.lock.or(own.as_ref()),
         ..options.clone()
     };
     let data = if config.buffer_rows.is_some() {

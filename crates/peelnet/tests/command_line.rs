@@ -80,6 +80,21 @@ const REFUSED: &str = "
     2 | inspect notes.txt | notes.txt
     1 | render two.toml --out a.png --size 100000x100000 | needs 100000 pixels a side
 
+    2 | render cups --out a.png --method depth_peel | no method 'depth_peel' & did you mean
+    2 | render cups --out a.png --method mboit | did you mean mboit4
+    1 | render cup --out a.png | cup: is no file and no shipped scene; did you mean cups
+    1 | render notes.txt --out a.png | notes.txt: is no scene & .gltf
+    1 | render m.safetensors --out a.png | m.safetensors: is a network; name a scene file
+    1 | render sound --out a.png | sound: is a folder, such as a dataset; name a scene file
+    1 | train two.toml --out m | two.toml: is a file, and a dataset is a folder & peelnet extract
+    1 | export sound --out w.wgsl | sound: is a folder, and a network is a file & peelnet train
+    1 | train edited --out m | edited: the manifest and the plan say different things & peelnet extract
+    2 | train sound --out m --lr 1e-30 | learning_rate & --lr
+    2 | export m.safetensors --out w.hlsl --lang msl | --out w.hlsl: the ending says hlsl, --lang says msl & .metal
+    1 | export m.safetensors --out other.glsl | --out other.glsl: the description beside it is that of another network's other.wgsl
+    2 | bench two.toml --methods blended,blended --out b | method blended is named twice
+    1 | inspect spy/spy.gltf | secret.txt & lies outside of the folder & --files-from
+
     1 | render missing.toml --out a.png | missing.toml
     1 | run missing.toml --out b | missing.toml
     1 | inspect missing | missing
@@ -125,6 +140,10 @@ const REFUSED: &str = "
     1 | extract orbit.toml --size 16x12 --out shard --format npy --shard 2/2 | format is parquet
     1 | extract --synthetic 100 --out shard --resume | adapter class is
 
+    1 | render two.toml --out new.png/ | new.png/: cannot be written: is a directory
+    1 | train sound --out new/ | --out new/: cannot be written: is a directory
+    1 | render two.toml --out locked.png | locked.png & is read-only & --force
+    1 | render two.toml --out foreign.exr | foreign.exr & not an EXR image of peelnet
     1 | render two.toml --out two.toml/a.png | two.toml/a.png
     1 | render two.toml --out folder.png | folder.png: cannot be written: is a directory
     1 | train sound --out m --loss-curve notes.txt/loss.csv | --loss-curve & notes.txt
@@ -168,6 +187,13 @@ const FOREIGN: &str = "
     own-page/report.html own-results/results.json own-rows/results.csv own-table/table.md
     own-chart/pareto.svg own-image/images/holiday.png";
 
+/// A mesh that would show what a file elsewhere holds.
+const SPY: &str = r#"{"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+    "buffers": [{"byteLength": 48, "uri": "../secret.txt"}],
+    "bufferViews": [{"buffer": 0, "byteLength": 36}],
+    "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0]}],
+    "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}]}"#;
+
 /// Files that are sound, broken in one place each, and a user's own.
 fn folder() -> Folder {
     let folder = Folder::new(&[
@@ -199,6 +225,10 @@ fn folder() -> Folder {
     folder.write("nan.toml", scene);
     folder.prints("extract --synthetic 40 --format csv --out sound");
     folder.prints("extract two.toml --size 24x16 --out own");
+    folder.prints("extract two.toml --size 24x16 --out edited");
+    let manifest = String::from_utf8(folder.read("edited/_peelnet/manifest.json")).unwrap();
+    let edited = manifest.replace("\"held_out\": false", "\"held_out\": true");
+    folder.write("edited/_peelnet/manifest.json", edited);
     folder.prints("extract orbit.toml --size 16x12 --out shard --shard 1/2");
     folder.prints("extract --synthetic 40 --format csv --out cut");
     let rows = "cut/fragments-00000-synthetic-v0.csv";
@@ -207,6 +237,17 @@ fn folder() -> Folder {
     folder.write_model("m.safetensors", peelnet::Recipe::SMALL);
     let model = folder.read("m.safetensors");
     folder.write("cut.safetensors", &model[..model.len() / 2]);
+    folder.write_model("other.safetensors", peelnet::Recipe::THESIS);
+    folder.prints("export other.safetensors --out other.wgsl");
+    folder.prints("render two.toml --size 8x8 --out locked.png");
+    let mut mode = std::fs::metadata(folder.at("locked.png"))
+        .unwrap()
+        .permissions();
+    mode.set_readonly(true);
+    std::fs::set_permissions(folder.at("locked.png"), mode).unwrap();
+    folder.write("foreign.exr", b"\x76\x2f\x31\x01\x02\0\0\0a user's own");
+    folder.write("secret.txt", [b's'; 64]);
+    folder.write("spy/spy.gltf", SPY);
     // Our own images, which may be replaced elsewhere, are textures of scenes.
     folder.prints("render two.toml --size 8x8 --out own.png");
     folder.write("ours/images/c.png", folder.read("own.png"));

@@ -53,7 +53,12 @@ fn names_in_files_are_printed_escaped() {
         let names_none = line.starts_with("render") || line.starts_with("extract");
         assert!(shown || names_none, "{line}");
     }
-    for file in ["b/report.html", "b/table.md", "b/results.json"] {
+    for file in [
+        "b/report.html",
+        "b/table.md",
+        "b/results.json",
+        "b/results.csv",
+    ] {
         assert!(!folder.read(file).contains(&0x1b), "{file}");
     }
 }

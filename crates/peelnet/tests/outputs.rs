@@ -29,6 +29,26 @@ fn a_hyphen_is_stdout() {
     assert_eq!(folder.everything(), before);
 }
 
+/// A file for stdout that nobody gets is an error; `/dev/null`, where nobody wants it, is none.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_closed_stdout_is_an_error() {
+    let folder = Folder::new(&[("two.toml", SCENE)]);
+    let program = env!("CARGO_BIN_EXE_peelnet");
+    for (to, code) in [(">&-", 1), (">/dev/null", 0)] {
+        let line = format!("{program} render two.toml --size 8x8 --out - {to}");
+        let mut shell = std::process::Command::new("sh");
+        let output = shell
+            .args(["-c", &line])
+            .current_dir(folder.path())
+            .output()
+            .unwrap();
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(code), "{to}: {said}");
+        assert_eq!(said.contains("stdout is closed"), code == 1, "{said}");
+    }
+}
+
 #[test]
 fn what_is_replaced_is_said() {
     let foreign = [("two.toml", SCENE), ("notes.png", "a user's own")];
@@ -36,7 +56,12 @@ fn what_is_replaced_is_said() {
     let render = "render two.toml --size 8x8 --out notes.png";
     folder.says(&format!("{render} --force"), 0);
     let said = folder.says(render, 0);
-    assert!(said.contains("replacing notes.png (a PNG image of peelnet)"));
+    assert!(said.contains("replaced notes.png (a PNG image of peelnet)"));
+    // An error replaces nothing.
+    let said = folder.says(&format!("{render} --view 9"), 2);
+    assert!(!said.contains("replac"), "{said}");
+    let said = folder.says("extract two.toml --size 8x8 --views 9 --out o", 2);
+    assert!(!said.contains("replac"), "{said}");
     // A texture of the scene that is drawn.
     let textured = format!("{SCENE}color_map = \"notes.png\"\n");
     folder.write("cut.toml", textured);
@@ -44,18 +69,24 @@ fn what_is_replaced_is_said() {
     let bench = "bench two.toml --methods wboit-eq9 --frames 0 --size 8x8 --out out";
     folder.says(bench, 0);
     let said = folder.says(bench, 0);
-    assert!(said.contains("replacing out/") && said.contains("more files"));
+    assert!(said.contains("replaced out/") && said.contains("more files"));
     let printed = folder.prints("extract two.toml --size 8x8 --out d");
     assert!(printed.contains("1 part,"), "{printed}");
     let said = folder.says("extract two.toml --size 8x8 --out d", 0);
-    assert!(said.contains("replacing d (a dataset)"), "{said}");
+    assert!(said.contains("replaced d (a dataset)"), "{said}");
 }
 
-/// Two seconds are promised; the deadline here only ends a test that would hang.
+/// Until a signal has ended a command that nobody waits for: a second is promised, and machines that run tests are slow.
+#[cfg(unix)]
+const SIGNAL_DEADLINE: std::time::Duration = std::time::Duration::from_secs(5);
+
+/// Also where nobody reads what is written to stderr.
 #[cfg(unix)]
 #[test]
 fn signals_end_every_command() {
+    use std::io::Write as _;
     use std::process::{Command, Stdio};
+    use std::time::{Duration, Instant};
     let folder = Folder::new(&[]);
     folder.prints("extract --synthetic 3000 --out d");
     // What a training resumes from, and folders that stay empty.
@@ -74,18 +105,52 @@ fn signals_end_every_command() {
         ("bench sixteen-050 --out b", INT),
         ("train d --epochs 1000000 --recipe small --out n", INT),
     ] {
-        let mut command = folder.command(line);
-        let child = command.stdout(Stdio::null()).stderr(Stdio::piped());
-        let child = child.spawn().unwrap();
-        // Long enough that the handler is there, short enough that no command has finished.
-        std::thread::sleep(std::time::Duration::from_millis(400));
-        let id = child.id().to_string();
-        let sent = Command::new("kill").args(["-s", signal, &id]).status();
-        assert!(sent.unwrap().success());
-        let output = child.wait_with_output().unwrap();
-        let text = String::from_utf8(output.stderr).unwrap();
-        assert_eq!(output.status.code(), Some(code), "{line}: {text}");
-        assert!(text.contains("interrupted"), "{line}: {text}");
-        assert_eq!(files(), before, "{line}");
+        for is_read in [true, false] {
+            let (unread, mut full) = std::io::pipe().unwrap();
+            let stderr = match is_read {
+                true => Stdio::piped(),
+                false => full.try_clone().unwrap().into(),
+            };
+            // Ends once nothing reads the pipe any more.
+            let filled = std::thread::spawn(move || while full.write(&[0; 4096]).is_ok() {});
+            let mut command = folder.command(line);
+            let mut child = command
+                .stdout(Stdio::null())
+                .stderr(stderr)
+                .spawn()
+                .unwrap();
+            drop(command);
+            // Long enough that the handler is there, short enough that no command has finished.
+            std::thread::sleep(Duration::from_millis(400));
+            let id = child.id().to_string();
+            let sent = Command::new("kill").args(["-s", signal, &id]).status();
+            assert!(sent.unwrap().success());
+            let sent = Instant::now();
+            while child.try_wait().unwrap().is_none() {
+                if sent.elapsed() > SIGNAL_DEADLINE {
+                    child.kill().unwrap();
+                    panic!("{line}: goes on, stderr read: {is_read}");
+                }
+                std::thread::sleep(Duration::from_millis(5));
+            }
+            let output = child.wait_with_output().unwrap();
+            let text = String::from_utf8(output.stderr).unwrap();
+            assert_eq!(output.status.code(), Some(code), "{line}: {text}");
+            assert_eq!(text.contains("interrupted"), is_read, "{line}: {text}");
+            assert_eq!(files(), before, "{line}");
+            drop(unread);
+            filled.join().unwrap();
+        }
     }
+}
+
+/// Mesa's drivers say what they miss in the environment on stderr.
+#[cfg(target_os = "linux")]
+#[test]
+fn nothing_is_said_where_nothing_is_wrong() {
+    let folder = Folder::new(&[("two.toml", SCENE)]);
+    let mut command = folder.command("render two.toml --size 8x8 --out a.png -q");
+    let output = command.env_remove("XDG_RUNTIME_DIR").output().unwrap();
+    assert_eq!(String::from_utf8_lossy(&output.stderr), "");
+    assert!(output.status.success());
 }

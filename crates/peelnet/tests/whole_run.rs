@@ -2,6 +2,8 @@
 
 use crate::common::{Folder, SPHERES, rows_of};
 use serde_json::Value;
+use std::process::Stdio;
+use std::time::Duration;
 
 fn sum(answer: &Value, method: &str, figure: &str) -> f64 {
     let rows = rows_of(answer, method).into_iter();
@@ -11,7 +13,21 @@ fn sum(answer: &Value, method: &str, figure: &str) -> f64 {
 #[test]
 fn a_run_writes_everything_it_promises() {
     let held_out = SPHERES.replace("\"three-spheres\"", "\"held\"\nheld_out = true");
-    let folder = Folder::new(&[("s.toml", SPHERES), ("h.toml", &held_out)]);
+    let copy = held_out.clone();
+    let held_out = held_out.replace("alpha = 0.7", "alpha = 0.6");
+    let folder = Folder::new(&[
+        ("s.toml", SPHERES),
+        ("h.toml", &held_out),
+        ("c.toml", &copy),
+    ]);
+    let said = folder.says(
+        "run s.toml c.toml --out c --size 64x48 --rows 4000 --epochs 2",
+        1,
+    );
+    assert!(
+        said.contains("'three-spheres' (s.toml) and 'held' (c.toml) show the same"),
+        "{said}"
+    );
     let answer = folder.json("run s.toml h.toml --out o --size 64x48 --rows 4000 --epochs 2");
     let files = "dataset/_peelnet/manifest.json dataset-summary.json dataset-summary.txt loss.csv loss.svg model.json table.md \
         report.html images/three-spheres-abuffer.png";
@@ -94,4 +110,58 @@ fn a_network_from_synthetic_lists_is_benched() {
     assert_eq!(named(""), "abuffer");
     let small = named("--max-bytes 12");
     assert!(["wboit-eq9", "painter-object:sort=off"].contains(&small.as_str()));
+    // A scene is what it shows, whatever it is called.
+    folder.write("renamed.toml", SPHERES.replace("three-spheres", "other"));
+    folder.write(
+        "changed.toml",
+        SPHERES.replace("alpha = 0.7", "alpha = 0.6"),
+    );
+    let of = |scene: &str| folder.says(&format!("recommend {scene} --results o --max-error 1"), 0);
+    assert_eq!(of("renamed.toml"), "");
+    let said = of("changed.toml");
+    assert!(
+        said.contains("do not show that their scene 'three-spheres' is this one"),
+        "{said}"
+    );
+}
+
+/// The files of a run belong together: a second one into its folder is refused.
+#[test]
+fn two_runs_into_one_folder_exclude_one_another() {
+    let folder = Folder::new(&[("s.toml", SPHERES)]);
+    let line = "run s.toml --out o --size 64x48 --rows 4000 --epochs";
+    let mut first = folder.command(&format!("{line} 1000000"));
+    let first = first.stdout(Stdio::null()).stderr(Stdio::null());
+    let mut first = first.spawn().unwrap();
+    let lock = folder.at("o/model.safetensors.lock");
+    let is_there = (0..1000).any(|_| {
+        std::thread::sleep(Duration::from_millis(10));
+        lock.exists()
+    });
+    let output = folder.command(&format!("{line} 2")).output().unwrap();
+    first.kill().unwrap();
+    first.wait().unwrap();
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(is_there && output.status.code() == Some(1), "{said}");
+    assert!(
+        said.contains("another training writes to this file"),
+        "{said}"
+    );
+}
+
+#[test]
+fn a_scene_without_transparency_is_a_warning() {
+    let opaque = SPHERES
+        .replace("alpha = 0.5", "alpha = 1")
+        .replace("alpha = 0.4", "alpha = 1")
+        .replace("alpha = 0.7", "alpha = 1");
+    let folder = Folder::new(&[
+        ("s.toml", SPHERES),
+        ("o.toml", &opaque.replace("three-", "opaque-")),
+    ]);
+    let said = folder.says("extract s.toml o.toml --size 8x8 --out d -q", 0);
+    assert!(
+        said.contains("nothing transparent is seen in opaque-spheres;"),
+        "{said}"
+    );
 }

@@ -18,9 +18,13 @@ pub fn trained_on<'a>(
     models: impl IntoIterator<Item = &'a Model>,
 ) -> Vec<String> {
     let datasets = models.into_iter().filter_map(|m| m.meta.dataset.as_ref());
-    let all: Vec<&String> = datasets.flat_map(|dataset| &dataset.scenes).collect();
-    let names = scenes.iter().map(|s| &s.name);
-    names.filter(|name| all.contains(name)).cloned().collect()
+    let all: Vec<_> = datasets.collect();
+    let is_trained_on = |scene: &&Scene| {
+        let mut all = all.iter();
+        all.any(|d| d.scenes.contains(&scene.name) || d.contents.contains(&scene.content))
+    };
+    let found = scenes.iter().filter(is_trained_on);
+    found.map(|scene| scene.name.clone()).collect()
 }
 
 /// Compares methods on every view of the scenes and returns the rows.
@@ -68,6 +72,10 @@ pub fn bench_watched(
     report: &mut dyn FnMut(Progress),
 ) -> Result<Bench, EvalError> {
     check_names(scenes)?;
+    let names: Vec<String> = plan.methods.iter().map(ToString::to_string).collect();
+    if let Some(k) = (1..names.len()).find(|&k| names[..k].contains(&names[k])) {
+        return Err(EvalError::SameMethod(names[k].clone()));
+    }
     let load_before = load();
     let left = |s: &Scene| plan.views_of(s).saturating_sub(partial.done(&s.name).len());
     let views: usize = scenes.iter().map(left).sum();

@@ -133,6 +133,7 @@ pub(crate) fn compare(
         }
         for row in &mut rows {
             row.adapter.clone_from(&gpu.info.name);
+            row.scene_content.clone_from(&scene.content);
         }
         partial.push(rows)?;
     }

@@ -24,6 +24,8 @@ pub enum EvalError {
         first: PathBuf,
         second: PathBuf,
     },
+    #[error("method {0} is named twice, and rows name their method; name it once")]
+    SameMethod(String),
     /// Anything else that cannot be measured: a path that is too long, a file of designs.
     #[error("{0}")]
     Unusable(String),

@@ -1,5 +1,7 @@
 //! The best method within a budget.
 
+use peelnet_scene::Scene;
+
 use crate::{
     Row,
     front::{Mean, Point, points},
@@ -25,16 +27,23 @@ pub struct Recommendation<'a> {
 }
 
 /// The points of a scene among the rows; where it is not among them those over all scenes, and a warning that says so.
-pub fn points_for(rows: &[Row], scene: &str) -> (Vec<Point>, Option<String>) {
-    let rows = Rows::new(rows);
-    let own = points(&rows.of_scene(scene), Mean::Geometric);
+pub fn points_for(rows: &[Row], scene: &Scene) -> (Vec<Point>, Option<String>) {
+    let own: Vec<Row> = rows
+        .iter()
+        .filter(|row| row.scene_content == scene.content)
+        .cloned()
+        .collect();
+    let own = points(&Rows::new(&own), Mean::Geometric);
     if !own.is_empty() {
         return (own, None);
     }
-    let warning = format!(
-        "scene '{scene}' is not among the results: judged by the geometric means over all scenes of them"
-    );
-    (points(&rows, Mean::Geometric), Some(warning))
+    let name = &scene.name;
+    let which = match rows.iter().any(|row| row.scene == *name) {
+        true => format!("the results do not show that their scene '{name}' is this one"),
+        false => format!("scene '{name}' is not among the results"),
+    };
+    let warning = format!("{which}: judged by the geometric means over all scenes of them");
+    (points(&Rows::new(rows), Mean::Geometric), Some(warning))
 }
 
 impl Budget {

@@ -62,6 +62,9 @@ pub struct Row {
     pub passes: u32,
     pub bytes_per_pixel: Option<f64>,
     pub adapter: String,
+    /// Hash of what the scene shows, see [`Scene::content`](peelnet_scene::Scene::content); empty in rows of before there was one.
+    #[serde(default)]
+    pub scene_content: String,
 }
 
 /// Of rows that were measured before there were more.

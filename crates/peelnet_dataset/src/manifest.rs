@@ -87,6 +87,9 @@ pub struct SceneEntry {
     pub file: String,
     /// Hash over the scene file and every file it reads.
     pub sha256: String,
+    /// The same without its name and `held_out`: scenes of one content are one scene. Empty where nothing was read.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub content: String,
     /// Whether the scene must not be trained on.
     pub held_out: bool,
     /// The effects that it needs, by name.

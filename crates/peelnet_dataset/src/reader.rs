@@ -37,12 +37,19 @@ impl Dataset {
     pub fn open(path: impl AsRef<Path>) -> Result<Self, DatasetError> {
         let path = path.as_ref();
         let store = open_store(path)?;
+        let plan = Plan::read(&*store)?;
         let Some(manifest) = Manifest::read(&*store)? else {
-            return Err(match Plan::read(&*store)? {
+            return Err(match plan {
                 Some(plan) => parts::unsealed(&*store, &plan)?,
                 None => parts::no_manifest(path),
             });
         };
+        if plan
+            .is_some_and(|plan| plan.hash != manifest.plan || plan.header.scenes != manifest.scenes)
+        {
+            let reason = "the manifest and the plan say different things of the scenes, one of them was edited; write the dataset again with `peelnet extract`";
+            return Err(DatasetError::invalid(path, reason));
+        }
         parts::check_files(&*store, &manifest, false)?;
         let files = |part: &Part| part.files.iter().map(|_| AtomicBool::new(false)).collect();
         Ok(Self {

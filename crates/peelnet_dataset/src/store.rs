@@ -216,6 +216,10 @@ pub(crate) fn store_at(path: &Path) -> Result<Arc<dyn Store>, DatasetError> {
 pub(crate) fn open_store(path: &Path) -> Result<Arc<dyn Store>, DatasetError> {
     let store = store_at(path)?;
     if let Some(folder) = store.folder() {
+        if folder.is_file() {
+            let reason = "is a file, and a dataset is a folder; write one of a scene with `peelnet extract SCENE --out DATASET`";
+            return Err(DatasetError::invalid(path, reason));
+        }
         // The error of the system says what is wrong with it.
         fs::read_dir(folder).map_err(DatasetError::io(folder, "open the dataset's folder"))?;
     }

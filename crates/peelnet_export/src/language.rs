@@ -7,7 +7,7 @@ use naga::{
     proc::BoundsCheckPolicies,
 };
 use peelnet_model::inputs::{Value, ValueKind};
-use std::fmt;
+use std::{fmt, path::Path};
 
 /// A shading language that a model is exported to.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -95,6 +95,16 @@ impl Language {
     /// The end of its files' names.
     pub const fn extension(self) -> &'static str {
         self.spelling().extension
+    }
+
+    /// The language that a file's name says: by [`Language::extension`], or `.msl`.
+    pub fn from_ending(path: &Path) -> Option<Self> {
+        let name = path.file_name()?.to_string_lossy().to_lowercase();
+        let is_in = |ending: &str| name.strip_suffix(ending).is_some_and(|n| n.ends_with('.'));
+        let mut all = Self::ALL.into_iter();
+        // GLSL ES comes before GLSL.
+        let found = all.find(|language| is_in(language.extension()));
+        found.or(is_in("msl").then_some(Self::Msl))
     }
 
     /// The statement that computes a value.

@@ -26,7 +26,7 @@ pub use peelnet_model::inputs::{Blend, Pass, Target, Value, ValueKind};
 pub use self_test::{Drawn, Pixel, Point, SelfTest};
 pub use text::{text, wgsl};
 #[cfg(not(target_arch = "wasm32"))]
-pub use verify::{Verification, description_path, evaluate, export, verify};
+pub use verify::{Verification, description_path, evaluate, export, other_described, verify};
 
 use peelnet_core::files::Kind;
 /// By what an exported text is known: its first lines.

@@ -253,6 +253,19 @@ pub fn description_path(text: &Path) -> Option<PathBuf> {
     (text != Path::new(STDOUT)).then_some(path)
 }
 
+/// A text of another network that the description beside `text` belongs to, and that an export of this model to `text` would leave without it.
+pub fn other_described(model: &Model, text: &Path) -> Result<Option<PathBuf>, ExportError> {
+    let Some(description) = description_path(text) else {
+        return Ok(None);
+    };
+    if std::fs::read_to_string(&description).ok() == Some(json(model)?) {
+        return Ok(None);
+    }
+    let texts = Language::ALL.map(|l| description.with_extension(l.extension()));
+    let is_other = |other: &PathBuf| other != text && other.exists() && description.exists();
+    Ok(texts.into_iter().find(is_other))
+}
+
 /// Exports a model, verifies the text on the GPU, and only then writes it, whole, and its description beside it.
 ///
 /// # Errors

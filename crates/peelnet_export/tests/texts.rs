@@ -27,6 +27,7 @@ fn hostile(recipe: Recipe, text: &str) -> Model {
         rows: 1,
         set_aside: Vec::new(),
         scenes: vec![text.to_owned(); 1000],
+        contents: Vec::new(),
     });
     meta.held_out = (0..1000).map(|k| (format!("{text}{k}"), 0.5)).collect();
     meta.config = serde_json::json!({ text: text });

@@ -76,7 +76,7 @@ pub(crate) fn encode(model: &Model) -> Result<Vec<u8>, Problem> {
 
 fn broken(error: safetensors::SafeTensorError) -> Problem {
     Problem(format!(
-        "not a readable safetensors file ({error}): it was cut off or is something else; train or copy the model again"
+        "not a readable safetensors file ({error}): it was cut off or is something else; name a file that `peelnet train` wrote, or copy it again"
     ))
 }
 

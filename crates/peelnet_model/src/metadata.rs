@@ -51,6 +51,9 @@ pub struct DatasetRef {
     pub rows: u64,
     /// Names of the scenes that were trained on.
     pub scenes: Vec<String>,
+    /// Hashes of what these scenes show; empty where they were not known.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub contents: Vec<String>,
     /// Names of scenes that were set aside whole, for validation or testing; empty where pixels of all scenes were.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub set_aside: Vec<String>,

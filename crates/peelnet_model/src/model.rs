@@ -29,12 +29,21 @@ impl Model {
     /// If the file cannot be read, is not a peelnet model, or [`Model::check`] refuses what it holds.
     pub fn load(path: impl AsRef<Path>) -> Result<Self, ModelError> {
         let path = path.as_ref();
-        let bytes =
-            peelnet_core::files::read(path, MAX_BYTES).map_err(|source| ModelError::Io {
+        let bytes = peelnet_core::files::read(path, MAX_BYTES);
+        let bytes = bytes.map_err(|source| match source.kind() {
+            std::io::ErrorKind::IsADirectory => ModelError::Invalid {
+                path: path.to_owned(),
+                problem: Problem(
+                    "is a folder, and a network is a file; name one that `peelnet train` wrote"
+                        .into(),
+                ),
+            },
+            _ => ModelError::Io {
                 path: path.to_owned(),
                 action: "read the model",
                 source,
-            })?;
+            },
+        })?;
         Self::from_bytes(&bytes, path)
     }
 

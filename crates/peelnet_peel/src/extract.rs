@@ -404,6 +404,7 @@ fn scene_entry(scene: &Scene) -> SceneEntry {
         name: scene.name.clone(),
         file: scene.source.display().to_string(),
         sha256: scene.hash.clone(),
+        content: scene.content.clone(),
         held_out: scene.held_out,
         effects: effects.map(|e| e.name.to_owned()).collect(),
     }

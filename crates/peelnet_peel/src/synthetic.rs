@@ -186,6 +186,7 @@ pub fn synthetic(
             file: NAME.to_owned(),
             // Nothing is read; the lists follow from the seed and this version.
             sha256: "0".repeat(64),
+            content: String::new(),
             held_out: false,
             effects: Vec::new(),
         }],

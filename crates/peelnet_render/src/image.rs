@@ -35,7 +35,7 @@ impl ImageFormat {
         }
     }
 
-    /// By what a file of this format is known. PNG files say who wrote them, the others have no place for it.
+    /// By what a file of this format is known: all say who wrote them.
     pub const fn kind(self) -> Kind {
         match self {
             Self::Png => Kind {
@@ -43,16 +43,13 @@ impl ImageFormat {
                 is: is_our_png,
             },
             Self::Exr => Kind {
-                name: "an EXR image",
-                is: |head| head.starts_with(b"\x76\x2f\x31\x01"),
+                name: "an EXR image of peelnet",
+                is: |head| head.starts_with(b"\x76\x2f\x31\x01") && is_marked(head),
             },
             Self::Npy => Kind {
-                name: "an NPY image (H x W x 4, 32-bit float)",
+                name: "an NPY image of peelnet",
                 is: |head| {
-                    let header = String::from_utf8_lossy(&head[..head.len().min(128)]);
-                    head.starts_with(b"\x93NUMPY")
-                        && header.contains("<f4")
-                        && header.contains(", 4)")
+                    head.starts_with(b"\x93NUMPY\x01\0") && head.get(8..10) == Some(&NPY_HEADER)
                 },
             },
         }
@@ -62,13 +59,18 @@ impl ImageFormat {
 /// Keyword and text of the chunk that says who wrote a PNG file.
 const SOFTWARE: [&str; 2] = ["Software", "peelnet"];
 
-/// The chunk stands before the pixels.
+/// Length of the header of our NPY files, whose format has no place for a name: four times what other programs need, filled with spaces.
+const NPY_HEADER: [u8; 2] = 502_u16.to_le_bytes();
+
 fn is_our_png(head: &[u8]) -> bool {
-    let mark = [SOFTWARE[0].as_bytes(), b"\0", SOFTWARE[1].as_bytes()].concat();
-    head.starts_with(b"\x89PNG\r\n\x1a\n")
-        && head[..head.len().min(256)]
-            .windows(mark.len())
-            .any(|w| w == mark)
+    head.starts_with(b"\x89PNG\r\n\x1a\n") && is_marked(head)
+}
+
+/// Whether a file says before its pixels that peelnet wrote it.
+fn is_marked(head: &[u8]) -> bool {
+    let mark = SOFTWARE[1].as_bytes();
+    let mut words = head[..head.len().min(1024)].windows(mark.len());
+    words.any(|word| word == mark)
 }
 
 /// Linear RGB and coverage, row 0 on top.
@@ -107,18 +109,34 @@ impl Image {
         let mut bytes = std::io::Cursor::new(Vec::new());
         match format {
             ImageFormat::Png => self.write_png(&mut bytes).map_err(|e| failed(&e))?,
-            ImageFormat::Exr => image::Rgba32FImage::from_raw(self.width, self.height, flat())
-                .ok_or_else(|| failed(&"pixels do not fill the frame"))?
-                .write_to(&mut bytes, image::ImageFormat::OpenExr)
-                .map_err(|e| failed(&e))?,
+            ImageFormat::Exr => self.write_exr(&mut bytes).map_err(|e| failed(&e))?,
             ImageFormat::Npy => {
                 let shape = (self.height as usize, self.width as usize, 4);
                 let array =
                     ndarray::Array3::from_shape_vec(shape, flat()).map_err(|e| failed(&e))?;
                 ndarray_npy::WriteNpyExt::write_npy(&array, &mut bytes).map_err(|e| failed(&e))?;
+                let bytes = bytes.get_mut();
+                let end = 10 + usize::from(u16::from_le_bytes([bytes[8], bytes[9]]));
+                let spaces = 10 + usize::from(u16::from_le_bytes(NPY_HEADER)) - end;
+                bytes.splice(end - 1..end - 1, std::iter::repeat_n(b' ', spaces));
+                bytes[8..10].copy_from_slice(&NPY_HEADER);
             }
         }
         Ok(bytes.into_inner())
+    }
+
+    fn write_exr(&self, to: impl std::io::Write + std::io::Seek) -> exr::error::UnitResult {
+        use exr::prelude::*;
+        let size = Vec2(self.width as usize, self.height as usize);
+        let pixel = |at: Vec2<usize>| self.pixels[at.flat_index_for_size(size)].into();
+        let attributes = LayerAttributes {
+            software_name: Some(SOFTWARE[1].into()),
+            ..LayerAttributes::default()
+        };
+        let encoding = Encoding::FAST_LOSSLESS;
+        let channels = SpecificChannels::rgba(|at| -> (f32, f32, f32, f32) { pixel(at) });
+        let layer = Layer::new(size, attributes, encoding, channels);
+        Image::from_layer(layer).write().to_buffered(to)
     }
 
     fn write_png(&self, to: impl std::io::Write) -> Result<(), png::EncodingError> {
@@ -182,10 +200,10 @@ mod tests {
         }
         for (name, foreign) in [
             ("a.png", &b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR"[..]),
-            ("a.exr", b"PNG"),
+            ("a.exr", b"\x76\x2f\x31\x01\x02\0\0\0channels"),
             (
                 "a.npy",
-                b"\x93NUMPY\x01\0v\0{'descr': '<f4', 'shape': (5,)}",
+                b"\x93NUMPY\x01\0v\0{'descr': '<f4', 'fortran_order': False, 'shape': (3, 2, 4), }",
             ),
         ] {
             let kind = ImageFormat::from_ending(&at(name))

@@ -23,7 +23,10 @@ use crate::{
 use glam::Vec3;
 use loader::Loader;
 use raw::RawScene;
-use std::{io, path::Path};
+use std::{
+    io,
+    path::{Path, PathBuf},
+};
 use timeline::{NO_TIMELINE, Snapshot};
 
 impl Scene {
@@ -42,7 +45,22 @@ impl Scene {
     /// # Errors
     /// See [`Scene::load`]; a time outside of the timeline, or of a scene without one.
     pub fn load_at(path: impl AsRef<Path>, time: Option<f32>) -> Result<Self, SceneError> {
-        load(path.as_ref(), Files::new(&peelnet_core::files::read), time)
+        Self::load_with(path, time, &[])
+    }
+
+    /// The same, where mesh files may also name files in these folders. Otherwise what a glTF, OBJ or MTL file names lies in its own folder
+    /// or in that of the scene, or below: such files come from strangers.
+    ///
+    /// # Errors
+    /// See [`Scene::load_at`].
+    pub fn load_with(
+        path: impl AsRef<Path>,
+        time: Option<f32>,
+        folders: &[PathBuf],
+    ) -> Result<Self, SceneError> {
+        let own = path.as_ref().parent().map(Path::to_owned);
+        let folders: Vec<PathBuf> = own.into_iter().chain(folders.iter().cloned()).collect();
+        load(path.as_ref(), Files::on_disk(&folders), time)
     }
 
     /// Reads the scene file `name` and everything it names through a function that returns a file's bytes, so that an archive, a web page
@@ -101,11 +119,32 @@ fn load(path: &Path, mut files: Files<'_>, time: Option<f32>) -> Result<Scene, S
             Some(_) => Err(SceneError::value(path, "timeline", NO_TIMELINE)),
         };
     }
-    let raw = parse(path, &mut files)?;
+    let raw = parse(path, &mut files).map_err(|e| instead(path, e))?;
     if raw.light.is_empty() {
         files.lighting = Lighting::Unlit;
     }
     assemble(raw, Loader::new(path, files), time)
+}
+
+/// The error of what is no scene file, where its name says what it is.
+fn instead(path: &Path, error: SceneError) -> SceneError {
+    let kind = match &error {
+        SceneError::Read { source, .. } => source.kind(),
+        _ => io::ErrorKind::InvalidData,
+    };
+    let ending = path.extension().unwrap_or_default().to_string_lossy();
+    let what = match (kind, &*ending.to_lowercase()) {
+        (io::ErrorKind::IsADirectory, _) => "is a folder, such as a dataset",
+        (io::ErrorKind::InvalidData, "safetensors") => "is a network",
+        (io::ErrorKind::InvalidData, ending) if !matches!(ending, "" | "toml") => "is no scene",
+        _ => return error,
+    };
+    let endings = ENDINGS.join(", .");
+    SceneError::file(
+        path,
+        None,
+        format!("{what}; name a scene file (.{endings}), or a shipped scene"),
+    )
 }
 
 const MAX_NAME: usize = peelnet_core::files::MAX_SHOWN;
@@ -121,6 +160,11 @@ fn parse(path: &Path, files: &mut Files<'_>) -> Result<RawScene, SceneError> {
     })?;
     // A byte order mark is no TOML, but some editors write one.
     let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
+    if let Ok(mut table) = toml::from_str::<toml::Table>(text) {
+        // Neither changes a pixel; nor do comments and the order of keys.
+        table.retain(|key, _| key != "name" && key != "held_out");
+        files.scene_shows(&table.to_string());
+    }
     toml::from_str(text).map_err(|e| {
         let line = e.span().map_or(1, |s| {
             1 + text[..s.start.min(text.len())].matches('\n').count()
@@ -184,6 +228,7 @@ fn assemble(raw: RawScene, mut loader: Loader<'_>, time: Option<f32>) -> Result<
         name,
         source: loader.path.to_owned(),
         hash: loader.files.hash(),
+        content: loader.files.content(),
         warnings: loader.files.warnings.texts(),
         files: loader.files.used,
         background: raw.background,

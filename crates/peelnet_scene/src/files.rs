@@ -32,7 +32,15 @@ type Read<'a> = dyn Fn(&Path, u64) -> io::Result<Vec<u8>> + 'a;
 /// Reads files, hashes those that become part of a scene, and makes textures of theirs.
 pub(crate) struct Files<'a> {
     read: &'a Read<'a>,
+    /// Of files on this machine: folders in which those lie that mesh files may name. A mesh file is a stranger's, a scene file the user's own.
+    pub allowed: Option<Vec<PathBuf>>,
+    /// The mesh file that names files now.
+    mesh: Option<PathBuf>,
+    /// Those that are read whole, by [`Files::identity`].
+    buffers: HashMap<String, Arc<Vec<u8>>>,
     hasher: Sha256,
+    /// The same with what a scene shows in place of the scene file's bytes.
+    content: Sha256,
     /// Every file that was read, in order.
     pub used: Vec<PathBuf>,
     /// How materials are lit that do not say it.
@@ -50,7 +58,11 @@ impl<'a> Files<'a> {
     pub fn new(read: &'a Read<'a>) -> Self {
         Self {
             read,
+            allowed: None,
+            mesh: None,
+            buffers: HashMap::new(),
             hasher: Sha256::new(),
+            content: Sha256::new(),
             used: Vec::new(),
             lighting: Lighting::Phong,
             budget: Budget::default(),
@@ -60,16 +72,83 @@ impl<'a> Files<'a> {
         }
     }
 
+    /// Files on this machine, those that mesh files name also from these folders.
+    pub fn on_disk(folders: &[PathBuf]) -> Self {
+        Self {
+            allowed: Some(folders.to_vec()),
+            ..Self::new(&peelnet_core::files::read)
+        }
+    }
+
+    /// What files are told apart by: one file has many names.
+    pub fn identity(&self, path: &Path) -> String {
+        let on_disk = self.allowed.as_ref();
+        match on_disk.and_then(|_| peelnet_core::files::identity(path)) {
+            Some(number) => format!("{number:?}"),
+            None => path.display().to_string(),
+        }
+    }
+
+    /// Loads a mesh file, which may name files in its own folder, below it, and in the allowed ones.
+    pub fn within<T>(&mut self, mesh: &Path, load: impl FnOnce(&mut Self) -> T) -> T {
+        let outer = self.mesh.replace(mesh.to_owned());
+        let loaded = load(self);
+        self.mesh = outer;
+        loaded
+    }
+
+    /// An error where a mesh file names a file elsewhere.
+    fn check_place(&self, path: &Path) -> io::Result<()> {
+        let (Some(allowed), Some(mesh)) = (&self.allowed, &self.mesh) else {
+            return Ok(());
+        };
+        if path == mesh {
+            return Ok(());
+        }
+        // What is not there, or is no file, is not read.
+        let file = path.canonicalize().ok().filter(|file| file.is_file());
+        let Some(file) = file else {
+            return Ok(());
+        };
+        let folder = |folder: &PathBuf| match folder.as_os_str().is_empty() {
+            true => Path::new(".").canonicalize(),
+            false => folder.canonicalize(),
+        };
+        let own = mesh.parent().map(Path::to_owned);
+        let allowed = allowed.iter().chain(&own);
+        let mut allowed = allowed.filter_map(|f| folder(f).ok());
+        if allowed.any(|folder| file.starts_with(folder)) {
+            return Ok(());
+        }
+        Err(io::Error::new(
+            io::ErrorKind::PermissionDenied,
+            "lies outside of the folder of the file that names it; copy it there, or allow its folder with --files-from",
+        ))
+    }
+
+    /// A file whose bytes stay as they are, read once under all of its names.
+    pub fn buffer(&mut self, path: &Path, limit: u64) -> Result<Arc<Vec<u8>>, SceneError> {
+        let key = self.identity(path);
+        if let Some(known) = self.buffers.get(&key) {
+            return Ok(Arc::clone(known));
+        }
+        let bytes = Arc::new(self.read(path, limit)?);
+        self.buffers.insert(key, Arc::clone(&bytes));
+        Ok(bytes)
+    }
+
     /// Reads a file of at most `limit` bytes, which becomes part of the scene's hash and list.
     pub fn read(&mut self, path: &Path, limit: u64) -> Result<Vec<u8>, SceneError> {
+        let place = self.check_place(path);
         // A caller's function knows no limit.
-        let read = (self.read)(path, limit)
+        let read = place
+            .and_then(|()| (self.read)(path, limit))
             .and_then(|bytes| check_size(bytes.len() as u64, limit).map(|()| bytes));
         let bytes = read.map_err(|source| SceneError::Read {
             path: path.to_owned(),
             source,
         })?;
-        self.hasher.update(&bytes);
+        self.hash_value(&bytes);
         self.used.push(path.to_owned());
         Ok(bytes)
     }
@@ -120,9 +199,20 @@ impl<'a> Files<'a> {
         self.warnings.add(format!("{}: {text}", shown(path)));
     }
 
-    /// Adds bytes that are in no file to the hash.
+    /// Adds bytes that are in no file to the hashes.
     pub fn hash_value(&mut self, bytes: &[u8]) {
         self.hasher.update(bytes);
+        self.content.update(bytes);
+    }
+
+    /// The scene file was read: this is what it shows.
+    pub fn scene_shows(&mut self, text: &str) {
+        self.content = Sha256::new_with_prefix(text);
+    }
+
+    /// SHA-256 over what the scene shows, whatever it is called and used for, hexadecimal.
+    pub fn content(&self) -> String {
+        hex(&self.content.clone().finalize())
     }
 
     /// SHA-256 over every file that was read in order, hexadecimal.

@@ -73,6 +73,9 @@ pub struct Scene {
     pub source: PathBuf,
     /// SHA-256 over the scene file and every file it reads, in order.
     pub hash: String,
+    /// SHA-256 over the same files without the scene's name and whether it is held out: equal for scenes that show the same. Empty for a scene
+    /// built in code.
+    pub content: String,
     /// The scene file and every file it reads, in order; empty for a scene built in code.
     pub files: Vec<PathBuf>,
     /// Background radiance, linear RGB.
@@ -117,6 +120,7 @@ impl Scene {
             name: name.to_owned(),
             source: PathBuf::from(format!("{name} (made by {maker})")),
             hash: String::new(),
+            content: String::new(),
             files: Vec::new(),
             background,
             transparency_scale: 1.0,

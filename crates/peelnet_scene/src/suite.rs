@@ -1,7 +1,8 @@
 //! The scenes that ship. They are embedded, so an installed program needs no folder beside it.
 
 use crate::{error::SceneError, scene::Scene};
-use std::path::Path;
+use peelnet_core::files::known_names;
+use std::path::{Path, PathBuf};
 
 pub use peelnet_shipped_scenes::{EFFECTS, SCENES, SceneFile, find};
 
@@ -20,8 +21,8 @@ pub fn load(name: &str) -> Result<Scene, SceneError> {
         Some(file) => load_file(file, None),
         None => {
             let all: Vec<&str> = SCENES.iter().chain(EFFECTS).map(|s| s.name).collect();
-            let message = "is no file and no shipped scene; name a file, or a shipped scene: ";
-            let message = message.to_owned() + &all.join(", ");
+            let known = known_names(name, &all);
+            let message = format!("is no file and no shipped scene; {known}");
             Err(SceneError::file(Path::new(name), None, message))
         }
     }
@@ -33,10 +34,18 @@ pub fn load(name: &str) -> Result<Scene, SceneError> {
 /// # Errors
 /// See [`Scene::load_at`].
 pub fn open(path: &Path, time: Option<f32>) -> Result<Scene, SceneError> {
+    open_with(path, time, &[])
+}
+
+/// The same, see [`Scene::load_with`].
+///
+/// # Errors
+/// See [`Scene::load_at`].
+pub fn open_with(path: &Path, time: Option<f32>, folders: &[PathBuf]) -> Result<Scene, SceneError> {
     let shipped = path.to_str().and_then(find);
     // A folder that happens to have a scene's name, such as its dataset, is none.
     if path.exists() && !(path.is_dir() && shipped.is_some()) {
-        return Scene::load_at(path, time);
+        return Scene::load_with(path, time, folders);
     }
     match shipped {
         Some(file) => load_file(file, time),
@@ -44,7 +53,7 @@ pub fn open(path: &Path, time: Option<f32>) -> Result<Scene, SceneError> {
         None if path.extension().is_none() && path.components().count() == 1 => {
             load(&path.to_string_lossy())
         }
-        None => Scene::load_at(path, time),
+        None => Scene::load_with(path, time, folders),
     }
 }
 

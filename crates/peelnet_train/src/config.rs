@@ -137,6 +137,9 @@ const MAX_ROWS: u64 = i32::MAX as u64;
 /// Weights of a network: a model file of 16 MiB, and four times that while it is trained.
 const MAX_PARAMETERS: u64 = 1 << 22;
 
+/// A step of Adam is as long as the learning rate; shorter ones than this vanish in weights of 32 bits.
+const LEAST_LEARNING_RATE: f64 = 1e-8;
+const LEARNING: &str = "give a number of at least 1e-8, below which 32-bit weights hardly change";
 const POSITIVE: &str = "give a positive number";
 const BELOW_1: &str = "give a number from 0 to below 1";
 const BETWEEN: &str = "give a share between 0 and 1";
@@ -215,16 +218,17 @@ impl Config {
             Schedule::Constant => 0.5,
         };
         let positive = f64::from_bits(1)..f64::INFINITY;
+        let learning = LEAST_LEARNING_RATE..f64::INFINITY;
         let between = f64::from_bits(1)..1.0;
         for (setting, value, range, hint) in [
-            ("learning_rate", self.learning_rate, &positive, POSITIVE),
+            ("learning_rate", self.learning_rate, &learning, LEARNING),
             ("beta1", self.beta1, &(0.0..1.0), BELOW_1),
             ("beta2", self.beta2, &(0.0..1.0), BELOW_1),
             ("epsilon", self.epsilon, &positive, POSITIVE),
             ("schedule.warmup", warmup, &between, BETWEEN),
         ] {
             if !range.contains(&value) {
-                return bad(setting, value.to_string(), hint);
+                return bad(setting, format!("{value:?}"), hint);
             }
         }
         for (setting, fraction) in [("held_out", self.held_out), ("validation", self.validation)] {
@@ -260,7 +264,7 @@ mod tests {
         let good = Config::for_recipe(Recipe::THESIS);
         good.check().unwrap();
         type Spoil = fn(&mut Config);
-        let spoiled: [(&str, Spoil); 17] = [
+        let spoiled: [(&str, Spoil); 18] = [
             ("epochs", |c| c.epochs = 0),
             ("1,000,000", |c| c.epochs = u32::MAX),
             ("batch", |c| c.batch = 0),
@@ -277,6 +281,7 @@ mod tests {
             ("chunk", |c| c.chunk = 0),
             ("hidden", |c| c.hidden = vec![3, 0]),
             ("learning_rate", |c| c.learning_rate = f64::NAN),
+            ("hardly change", |c| c.learning_rate = 1e-30),
             ("beta2", |c| c.beta2 = 1.0),
             ("held_out", |c| c.held_out = 1.0),
             ("patience", |c| c.patience = Some(0)),

@@ -5,7 +5,7 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use peelnet_dataset::{Dataset, Part, Split, SplitBy, Subset};
+use peelnet_dataset::{Dataset, Part, SceneEntry, Split, SplitBy, Subset};
 use peelnet_model::{DatasetRef, Model};
 
 use crate::config::Config;
@@ -140,6 +140,7 @@ struct Plan<'a> {
 
 impl<'a> Plan<'a> {
     fn new(config: &Config, datasets: &'a [Dataset]) -> Result<Self, TrainError> {
+        check_contents(datasets)?;
         let by_pixel = Split::new(config.seed, config.validation, config.held_out)?;
         let parts: Vec<(&Dataset, &Part)> = datasets.iter().flat_map(trained_on).collect();
         let mut rows: BTreeMap<String, u64> = BTreeMap::new();
@@ -157,9 +158,13 @@ impl<'a> Plan<'a> {
         let (validation, test): (Vec<_>, Vec<_>) = (names(Subset::Validation), names(Subset::Test));
         let scenes = parts.iter().map(|(d, p)| scene_name(d, p).to_owned());
         let scenes: BTreeSet<String> = scenes.collect();
-        let (set_aside, scenes) = scenes
+        let (set_aside, scenes): (Vec<String>, Vec<String>) = scenes
             .into_iter()
             .partition(|name| validation.contains(name) || test.contains(name));
+        let entries = parts.iter().map(|(d, p)| scene_entry(d, p));
+        let trained = entries.filter(|e| scenes.contains(&e.name) && !e.content.is_empty());
+        let contents: BTreeSet<&String> = trained.map(|e| &e.content).collect();
+        let contents = contents.into_iter().cloned().collect();
         let split_of = |dataset, part| match &subsets {
             None => by_pixel,
             Some(subsets) => {
@@ -186,6 +191,7 @@ impl<'a> Plan<'a> {
                     .fold(0, u64::saturating_add),
                 set_aside,
                 scenes,
+                contents,
             },
             split: match subsets {
                 Some(_) => DataSplit::Scenes { validation, test },
@@ -202,8 +208,28 @@ fn trained_on(dataset: &Dataset) -> impl Iterator<Item = (&Dataset, &Part)> {
     parts.map(move |part| (dataset, part))
 }
 
+fn scene_entry<'a>(dataset: &'a Dataset, part: &Part) -> &'a SceneEntry {
+    &dataset.manifest().scenes[part.scene as usize]
+}
+
 fn scene_name<'a>(dataset: &'a Dataset, part: &Part) -> &'a str {
-    &dataset.manifest().scenes[part.scene as usize].name
+    &scene_entry(dataset, part).name
+}
+
+/// A scene under two names would be trained on under one and judge under the other.
+fn check_contents(datasets: &[Dataset]) -> Result<(), TrainError> {
+    let mut names: BTreeMap<&str, &SceneEntry> = BTreeMap::new();
+    let scenes = datasets.iter().flat_map(|d| &d.manifest().scenes);
+    for scene in scenes.filter(|scene| !scene.content.is_empty()) {
+        let first = *names.entry(&scene.content).or_insert(scene);
+        if (&first.name, first.held_out) != (&scene.name, scene.held_out) {
+            return Err(TrainError::Failed(format!(
+                "scenes '{}' ({}) and '{}' ({}) show the same, and what is trained on may not judge the network; leave one out",
+                first.name, first.file, scene.name, scene.file
+            )));
+        }
+    }
+    Ok(())
 }
 
 /// The name that a part's rows are split by: its scene, or of a synthetic dataset its world.

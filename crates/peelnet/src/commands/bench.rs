@@ -41,7 +41,7 @@ fn compare(context: &Context<'_>, args: &CompareArgs) -> Result<(), Failure> {
     let mut outputs = context.results::<Bench>(pictures.scenes.iter().chain(models), out)?;
     outputs.folder("--out", out, [(Partial::FILE, Partial::KIND)])?;
     let scenes = context.scenes(&pictures.scenes)?;
-    context.begin(&mut outputs, &scenes)?;
+    let _begun = context.begin(outputs, &scenes)?;
     let plan = Plan {
         samples: pictures.samples,
         views: args.views.map(|n| n as usize),
@@ -60,7 +60,7 @@ fn compare(context: &Context<'_>, args: &CompareArgs) -> Result<(), Failure> {
 fn redraw(context: &Context<'_>, out: &Path) -> Result<(), Failure> {
     let mut outputs = context.results::<Bench>(&[], out)?;
     outputs.folder("--out", out, [(Partial::FILE, Partial::KIND)])?;
-    context.begin(&mut outputs, &[])?;
+    let _begun = context.begin(outputs, &[])?;
     let results = read(out)?;
     results.write(out)?;
     print(context, &results)
@@ -95,8 +95,8 @@ pub(super) fn show<'a>(context: &'a Context<'_>, name: &'static str) -> impl FnM
 
 fn scale(context: &Context<'_>, args: &ScalingArgs) -> Result<(), Failure> {
     let (out, models) = (&args.compared.out, &args.compared.models);
-    let mut outputs = context.results::<Scaling>(models, out)?;
-    context.begin(&mut outputs, &[])?;
+    let outputs = context.results::<Scaling>(models, out)?;
+    let _begun = context.begin(outputs, &[])?;
     let gpu = context.gpu()?;
     // Parameters change what a method costs, but hardly how that grows.
     let named = args.compared.methods.as_deref();
@@ -112,7 +112,7 @@ fn scale(context: &Context<'_>, args: &ScalingArgs) -> Result<(), Failure> {
 }
 
 fn measure_effects(context: &Context<'_>, args: &EffectsArgs) -> Result<(), Failure> {
-    let mut outputs = context.results::<Effects>(&args.scenes, &args.out)?;
+    let outputs = context.results::<Effects>(&args.scenes, &args.out)?;
     let scenes = if args.scenes.is_empty() {
         let shipped = suite::EFFECTS.iter();
         let shipped = shipped.map(|file| suite::load_file(file, None));
@@ -120,7 +120,7 @@ fn measure_effects(context: &Context<'_>, args: &EffectsArgs) -> Result<(), Fail
     } else {
         context.scenes(&args.scenes)?
     };
-    context.begin(&mut outputs, &scenes)?;
+    let _begun = context.begin(outputs, &scenes)?;
     let settings = effects::Settings {
         method: args.method.clone(),
         size: args.size,
@@ -141,9 +141,9 @@ fn along_path(context: &Context<'_>, args: &PathArgs) -> Result<(), Failure> {
     if args.frames == 0 {
         return Err(Failure::wrong("--frames 0: a path has at least one frame"));
     }
-    let mut outputs = context.results::<Along>(pictures.scenes.iter().chain(models), out)?;
+    let outputs = context.results::<Along>(pictures.scenes.iter().chain(models), out)?;
     let scenes = context.scenes(&pictures.scenes)?;
-    context.begin(&mut outputs, &scenes)?;
+    let _begun = context.begin(outputs, &scenes)?;
     let gpu = context.gpu()?;
     // A path costs as much as sixty views.
     let named = pictures.compared.methods.as_deref();

@@ -1,4 +1,4 @@
-use super::{Context, command_line, json_path};
+use super::{Context, command_line, few, json_path};
 use crate::cli::{ExtractArgs, SealArgs};
 use crate::progress::Bar;
 use peelnet::Failure;
@@ -15,12 +15,15 @@ pub(super) fn run(context: &Context<'_>, args: &ExtractArgs) -> Result<(), Failu
     if !is_remote(out) {
         check_is_folder("--out", out)?;
     }
-    if peelnet_dataset::replaces(out, args.resume || args.shard.is_some())? {
-        let message = format!("replacing {} (a dataset)", shown(out));
+    let replaces = peelnet_dataset::replaces(out, args.resume || args.shard.is_some())?;
+    let (before, _) = finished(out);
+    let report = report(context, args);
+    // Where the new one failed, the older one may still be there.
+    if replaces && (report.is_ok() || peelnet_dataset::Dataset::open(out).is_err()) {
+        let message = format!("replaced {} (a dataset)", shown(out));
         context.console.message(message);
     }
-    let (before, _) = finished(out);
-    let report = report(context, args).inspect_err(|_| {
+    let report = report.inspect_err(|_| {
         // What stays of a run that failed, if it finished anything.
         let (done, of) = finished(out);
         if done > before {
@@ -32,6 +35,7 @@ pub(super) fn run(context: &Context<'_>, args: &ExtractArgs) -> Result<(), Failu
         }
     })?;
     let m = &report.manifest;
+    warn_of_empty(context, &report);
     let text = || text(out, &report);
     context.console.result(text, || {
         json!({
@@ -147,6 +151,20 @@ pub(super) fn peel(
         ));
     }
     Ok(report)
+}
+
+/// Warns of scenes of a whole dataset in which nothing transparent was seen.
+pub(super) fn warn_of_empty(context: &Context<'_>, report: &ExtractReport) {
+    let m = &report.manifest;
+    let rows = m.rows_by_scene();
+    let empty = m.scenes.iter().filter(|s| rows.get(&*s.name) == Some(&0));
+    let empty: Vec<String> = empty.map(|s| s.name.clone()).collect();
+    if m.is_whole() && !empty.is_empty() {
+        context.console.warn(format!(
+            "no rows: nothing transparent is seen in {}; look at its materials' alpha and its cameras",
+            few(&empty, 6)
+        ));
+    }
 }
 
 pub(super) fn text(folder: &Path, report: &ExtractReport) -> String {

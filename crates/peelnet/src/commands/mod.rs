@@ -67,16 +67,16 @@ impl Context<'_> {
         Ok(outputs)
     }
 
-    /// Says what will be replaced, before work on these scenes begins.
-    fn begin(&self, outputs: &mut Outputs, scenes: &[Scene]) -> Result<(), Failure> {
+    /// Work on these scenes begins. Once what is returned is dropped, a message says which files were replaced.
+    fn begin(&self, mut outputs: Outputs, scenes: &[Scene]) -> Result<Begun, Failure> {
         if outputs.is_stdout_taken() {
             self.console.give_stdout_away();
         }
-        let read = scenes.iter().flat_map(|s| &s.files);
-        if let Some(replaced) = outputs.begin(read)? {
-            self.console.message(replaced);
-        }
-        Ok(())
+        outputs.begin(scenes.iter().flat_map(|s| &s.files))?;
+        Ok(Begun {
+            outputs,
+            console: self.console,
+        })
     }
 
     fn scenes(&self, paths: &[PathBuf]) -> Result<Vec<Scene>, Failure> {
@@ -88,7 +88,7 @@ impl Context<'_> {
             self.say_not_shipped("file", path);
         }
         let bar = Bar::spinner(self.console, format!("loading {}", shown(path)));
-        let scene = suite::open(path, time);
+        let scene = suite::open_with(path, time, &self.global.files_from);
         drop(bar);
         let scene = scene.map_err(|error| match error {
             // The file is as it should be, the flag is not: states of a timeline have numbers.
@@ -147,6 +147,19 @@ impl Context<'_> {
             return Err(Failure::failed(interrupt::MESSAGE));
         }
         Ok(())
+    }
+}
+
+/// The outputs of a command that has begun.
+struct Begun {
+    outputs: Outputs,
+    console: Console,
+}
+
+impl Drop for Begun {
+    fn drop(&mut self) {
+        let replaced = self.outputs.replaced();
+        replaced.iter().for_each(|text| self.console.message(text));
     }
 }
 

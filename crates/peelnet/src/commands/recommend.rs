@@ -23,7 +23,7 @@ pub(super) fn run(context: &Context<'_>, args: &RecommendArgs) -> Result<(), Fai
         }
     };
     let rows = &results.measured.rows;
-    let (points, warning) = points_for(rows, &scene.name);
+    let (points, warning) = points_for(rows, &scene);
     let from = match warning {
         Some(text) => {
             context.console.warn(text);

@@ -17,7 +17,7 @@ pub(super) fn run(context: &Context<'_>, args: &RenderArgs) -> Result<(), Failur
     let mut outputs = context.outputs(args.model.iter().chain([&args.scene]));
     outputs.file("--out", &args.out, format.kind())?;
     let mut scene = context.scene(&args.scene, args.time)?;
-    context.begin(&mut outputs, std::slice::from_ref(&scene))?;
+    let _begun = context.begin(outputs, std::slice::from_ref(&scene))?;
     let layers = args.highlight.map(|highlight| LayerView {
         highlight,
         increasing: args.increasing,

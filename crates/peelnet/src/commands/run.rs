@@ -18,7 +18,7 @@ use peelnet_peel::ExtractOptions;
 use peelnet_render::gpu::Gpu;
 use peelnet_render::{LearnedWeight, MethodSpec, role};
 use peelnet_scene::{Scene, suite};
-use peelnet_train::{Config, Outcome, RunOptions};
+use peelnet_train::{Config, Outcome, OutputLock, RunOptions};
 use serde_json::json;
 use std::time::Instant;
 
@@ -41,13 +41,15 @@ const SHOWN: [&str; 8] = [
 /// The scene of it: held out, and of another kind than those of the run.
 const SHOWN_SCENE: &str = "foliage-held";
 
+const MODEL: &str = "model.safetensors";
+
 pub(super) fn run(context: &Context<'_>, args: &RunArgs) -> Result<(), Failure> {
     let mut outputs = context.results::<ThesisRun>(&args.scenes, &args.out)?;
     peelnet_dataset::replaces(&args.out.join("dataset"), false)?;
     let files = [
         ("dataset-summary.json", summary_text::KIND),
         ("dataset-summary.txt", summary_text::KIND),
-        ("model.safetensors", peelnet_model::KIND),
+        (MODEL, peelnet_model::KIND),
         ("model.wgsl", peelnet_export::KIND),
         ("model.json", peelnet_export::JSON_KIND),
         ("loss.csv", curve_kind("loss.csv".as_ref())?),
@@ -61,7 +63,7 @@ pub(super) fn run(context: &Context<'_>, args: &RunArgs) -> Result<(), Failure> 
     } else {
         context.scenes(&args.scenes)?
     };
-    context.begin(&mut outputs, &scenes)?;
+    let _begun = context.begin(outputs, &scenes)?;
     if scenes.iter().all(|s| s.held_out) {
         return Err(Failure::wrong(
             "every scene is marked held-out, so there is none to train on; add one that is not",
@@ -87,6 +89,7 @@ pub(super) fn run(context: &Context<'_>, args: &RunArgs) -> Result<(), Failure> 
         },
         scenes: &scenes,
         gpu: context.gpu()?,
+        lock: OutputLock::take(&args.out.join(MODEL))?,
         start: Instant::now(),
         stages: Vec::new(),
     };
@@ -120,6 +123,8 @@ struct Run<'a> {
     /// To train on, about.
     rows: u64,
     config: Config,
+    /// Of the network: a second run into the folder is refused.
+    lock: OutputLock,
     scenes: &'a [Scene],
     gpu: Gpu,
     /// Of the stage.
@@ -198,8 +203,11 @@ impl Run<'_> {
     /// Trains, and writes the model and the loss curve.
     fn train(&mut self, dataset: &Dataset) -> Result<(Outcome, Svg), Failure> {
         let out = &self.args.out;
-        let model = out.join("model.safetensors");
-        let options = RunOptions::new(&model, self.context.stop);
+        let model = out.join(MODEL);
+        let options = RunOptions {
+            lock: Some(&self.lock),
+            ..RunOptions::new(&model, self.context.stop)
+        };
         let curves = [out.join("loss.csv"), out.join("loss.svg")];
         let datasets = std::slice::from_ref(dataset);
         let outcome = train::fit(self.context, &self.config, datasets, &options, &curves)?;

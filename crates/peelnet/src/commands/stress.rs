@@ -16,10 +16,14 @@ pub(super) fn run(context: &Context<'_>, args: &StressArgs) -> Result<(), Failur
         none if none.is_empty() => CASES.iter().collect(),
         cases => cases,
     };
-    if let Some(out) = &args.out {
-        let mut outputs = context.results::<Stressed>(&args.models, out)?;
-        context.begin(&mut outputs, &[])?;
-    }
+    let outputs = args.out.iter();
+    let outputs = outputs
+        .map(|out| context.results::<Stressed>(&args.models, out))
+        .next();
+    let _begun = outputs
+        .transpose()?
+        .map(|outputs| context.begin(outputs, &[]))
+        .transpose()?;
     let gpu = context.gpu()?;
     let own_only = !args.models.is_empty() && args.methods.is_none();
     let all = || {

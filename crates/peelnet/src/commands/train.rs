@@ -23,7 +23,7 @@ pub(super) fn run(context: &Context<'_>, args: &TrainArgs) -> Result<(), Failure
     )?;
     let datasets = args.datasets.iter().map(Dataset::open);
     let datasets = datasets.collect::<Result<Vec<_>, _>>()?;
-    context.begin(&mut outputs, &[])?;
+    let _begun = context.begin(outputs, &[])?;
     let mut options = RunOptions::new(place.file(), context.stop);
     options.resume = args.resume;
     let outcome = fit(context, &config, &datasets, &options, &args.loss_curve)?;

@@ -30,8 +30,8 @@ pub(super) fn run(context: &Context<'_>, args: &ViewArgs) -> Result<(), Failure>
             )));
         }
         outputs.file("--screenshot", path, ImageFormat::Png.kind())?;
-        context.begin(&mut outputs, &[])?;
     }
+    let _begun = context.begin(outputs, &[])?;
     let is_script = args.frames.is_some() || args.screenshot.is_some();
     // A script has nobody who reads messages in the window: what does not load ends it here.
     let mut loaded = None;

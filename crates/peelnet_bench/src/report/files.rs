@@ -1,7 +1,7 @@
 //! Files appear whole or not at all.
 
 use crate::{EvalError, chart::Svg, report::page};
-use peelnet_core::files::Kind;
+use peelnet_core::files::{Kind, one_line};
 use serde::Serialize;
 use std::path::Path;
 
@@ -55,5 +55,34 @@ pub(crate) fn csv(rows: &[impl Serialize]) -> String {
         table.serialize(row).expect("a row has flat fields");
     }
     let bytes = table.into_inner().expect("memory can be written");
+    let mut records = csv::ReaderBuilder::new();
+    let mut records = records.has_headers(false).from_reader(&*bytes);
+    let mut table = csv::Writer::from_writer(Vec::new());
+    for record in records.records() {
+        let record = record.expect("was written just now");
+        let fields = record.iter().map(plain_field);
+        table.write_record(fields).expect("memory can be written");
+    }
+    let bytes = table.into_inner().expect("memory can be written");
     String::from_utf8(bytes).expect("fields are text")
+}
+
+/// A field without what acts on terminals, and with an apostrophe before what spreadsheets take for a formula: names of scenes are anything.
+fn plain_field(field: &str) -> String {
+    let is_formula = field.starts_with(['=', '+', '-', '@']) && field.parse::<f64>().is_err();
+    let apostrophe = if is_formula { "'" } else { "" };
+    format!("{apostrophe}{}", one_line(field))
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn fields_of_tables_are_plain() {
+        let rows = [("=1+1", -2.5), ("@x\u{1b}[2J", 1.0), ("a, \"b\"", 0.0)];
+        let text = super::csv(&rows);
+        assert_eq!(
+            text,
+            "'=1+1,-2.5\n'@x\\u{1b}[2J,1.0\n\"a, \"\"b\"\"\",0.0\n"
+        );
+    }
 }

@@ -9,10 +9,10 @@ mod text;
 
 pub use input::{check_size, open, read, read_head};
 pub use output::{
-    Kind, Outputs, Refused, STDOUT, Unfinished, check_file, check_is_folder, folder_of, is_remote,
-    moving, remove_unfinished, temporary, write_whole,
+    Kind, Outputs, Refused, STDOUT, Unfinished, check_file, check_is_folder, folder_of, identity,
+    is_remote, moving, remove_unfinished, temporary, write_whole,
 };
 pub use text::{
-    MAX_SHOWN, counted, error_line, hex, one_line, printable, printable_json, printable_lines,
-    shown, thousands,
+    MAX_SHOWN, counted, error_line, hex, known_names, nearest, one_line, printable, printable_json,
+    printable_lines, shown, thousands,
 };

@@ -42,6 +42,14 @@ fn local(path: &Path) -> io::Result<&Path> {
         .ok_or_else(|| invalid("is no file of this machine; name one"))
 }
 
+/// Whether a name can only be a folder's: it ends in a separator, or in one and a dot. A [`Path`] of it does not say so.
+fn is_folder_name(path: &Path) -> bool {
+    let name = path.as_os_str().as_encoded_bytes();
+    let name = name.strip_suffix(b".").unwrap_or(name);
+    name.last()
+        .is_some_and(|&b| std::path::is_separator(char::from(b)))
+}
+
 fn invalid(why: &str) -> io::Error {
     io::Error::new(io::ErrorKind::InvalidInput, why)
 }
@@ -86,6 +94,7 @@ struct Existing {
     id: Option<(u64, u64)>,
     bytes: u64,
     modified: Option<SystemTime>,
+    is_read_only: bool,
 }
 
 /// What stands at a resolved path.
@@ -107,7 +116,13 @@ fn find(file: &Path) -> io::Result<Option<Existing>> {
         id: file_id(&metadata),
         bytes: metadata.len(),
         modified: metadata.modified().ok(),
+        is_read_only: metadata.permissions().readonly(),
     }))
+}
+
+/// What a file is told apart by on this machine, whatever its name; `None` where systems do not say it.
+pub fn identity(path: &Path) -> Option<(u64, u64)> {
+    file_id(&fs::metadata(path).ok()?)
 }
 
 /// Device and number of a file.
@@ -143,6 +158,9 @@ impl Output {
                 existing: None,
             });
         }
+        if is_folder_name(path) {
+            return Err(io::ErrorKind::IsADirectory.into());
+        }
         let path = absolute(local(path)?)?;
         let file = resolve(&path)?;
         Ok(Self {
@@ -150,6 +168,10 @@ impl Output {
             file: Some(file),
             path,
         })
+    }
+
+    fn is_read_only(&self) -> bool {
+        self.existing.as_ref().is_some_and(|file| file.is_read_only)
     }
 
     /// The same as a command's [`Outputs`] saw it; in a folder whose files they saw, the others are new.
@@ -181,6 +203,9 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let Some(file) = &expected.file else {
         return to_stdout(bytes);
     };
+    if !is_allowed && expected.is_read_only() {
+        return Err(io::Error::new(io::ErrorKind::PermissionDenied, READ_ONLY));
+    }
     let folder = folder_of(file);
     fs::create_dir_all(folder)?;
     let (mut unnamed, _unfinished) = temporary(folder, ".peelnet-")?;
@@ -238,6 +263,8 @@ pub fn temporary(folder: &Path, prefix: &str) -> io::Result<(NamedTempFile, Unfi
     Ok((file, unfinished))
 }
 
+const READ_ONLY: &str = "the file there is read-only";
+
 fn changed() -> io::Error {
     io::Error::new(
         io::ErrorKind::AlreadyExists,
@@ -245,8 +272,25 @@ fn changed() -> io::Error {
     )
 }
 
+/// Whether this process began without stdout: then the standard library opens `/dev/null` there, for reading as well.
+fn is_stdout_closed() -> bool {
+    const READ_AND_WRITE: &str = "2";
+    let leads_to_null =
+        fs::read_link("/proc/self/fd/1").is_ok_and(|to| to == Path::new("/dev/null"));
+    let info = fs::read_to_string("/proc/self/fdinfo/1").unwrap_or_default();
+    let mut lines = info.lines();
+    let flags = lines.find_map(|line| line.strip_prefix("flags:"));
+    leads_to_null && flags.is_some_and(|flags| flags.ends_with(READ_AND_WRITE))
+}
+
 /// A reader that closes its pipe has read enough.
 fn to_stdout(bytes: &[u8]) -> io::Result<()> {
+    if is_stdout_closed() {
+        return Err(io::Error::new(
+            io::ErrorKind::NotConnected,
+            "stdout is closed",
+        ));
+    }
     let mut stdout = io::stdout().lock();
     match stdout.write_all(bytes).and_then(|()| stdout.flush()) {
         Err(e) if e.kind() == io::ErrorKind::BrokenPipe => Ok(()),
@@ -352,7 +396,7 @@ pub struct Outputs {
     inputs: Vec<PathBuf>,
     /// Files that it writes, as far as they are named, and folders.
     taken: Vec<Output>,
-    /// What lies where it writes.
+    /// What lay where it writes.
     replaced: Vec<(PathBuf, &'static str)>,
 }
 
@@ -399,6 +443,10 @@ impl Outputs {
                 "this command reads that file; choose another name, or replace it with {force}"
             );
             return Err(Refused::new(true, why));
+        }
+        if output.is_read_only() && !is_forced {
+            let why = format!("{READ_ONLY}; choose another name, or replace it with {force}");
+            return Err(Refused::new(false, why));
         }
         if let Some(is_ours) = kind.is_ours(&output)? {
             if !is_ours && !is_forced {
@@ -473,14 +521,14 @@ impl Outputs {
         self.taken.iter().any(|output| output.file.is_none())
     }
 
-    /// What will be replaced, for a message before work begins that reads these files, too.
+    /// Work begins that reads these files, too.
     ///
     /// # Errors
     /// An output that is read, such as a texture: which files these are is known only once a scene is loaded.
     pub fn begin<'a>(
         &mut self,
         read: impl IntoIterator<Item = &'a PathBuf>,
-    ) -> Result<Option<String>, Refused> {
+    ) -> Result<(), Refused> {
         let read = read.into_iter().filter_map(|f| f.canonicalize().ok());
         self.inputs.extend(read);
         let (force, is_forced) = self.force;
@@ -492,15 +540,22 @@ impl Outputs {
             );
             return Err(Refused::new(true, why));
         }
-        let Some((first, what)) = self.replaced.first() else {
-            return Ok(None);
-        };
-        let more = match self.replaced.len() - 1 {
+        Ok(())
+    }
+
+    /// Which files were replaced so far, for a message.
+    pub fn replaced(&self) -> Option<String> {
+        let mut replaced = self.replaced.iter().filter(|(path, _)| {
+            let now = Output::look(path).ok();
+            now.is_some_and(|now| !self.taken.iter().any(|old| old.existing == now.existing))
+        });
+        let (first, what) = replaced.next()?;
+        let more = match replaced.count() {
             0 => String::new(),
             1 => " and one more file".to_owned(),
             n => format!(" and {n} more files"),
         };
-        Ok(Some(format!("replacing {} ({what}){more}", shown(first))))
+        Some(format!("replaced {} ({what}){more}", shown(first)))
     }
 
     fn is_input(&self, output: &Output) -> bool {
@@ -535,8 +590,7 @@ pub fn check_is_folder(setting: &str, folder: &Path) -> Result<(), Refused> {
 
 /// Whether two paths are the same file, also by hard links.
 fn is_same(a: &Path, b: &Path) -> bool {
-    let id = |path: &Path| file_id(&fs::metadata(path).ok()?);
-    a == b || id(a).is_some_and(|found| id(b) == Some(found))
+    a == b || identity(a).is_some_and(|found| identity(b) == Some(found))
 }
 
 static UNFINISHED: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
@@ -593,7 +647,7 @@ mod tests {
     };
 
     /// What a file or a link holds, by path, and its permissions.
-    fn everything(folder: &Path) -> BTreeMap<PathBuf, (String, bool)> {
+    fn everything(folder: &Path) -> BTreeMap<PathBuf, (String, fs::Permissions)> {
         let mut found = BTreeMap::new();
         for entry in fs::read_dir(folder).expect("lists") {
             let path = entry.expect("an entry").path();
@@ -606,7 +660,7 @@ mod tests {
             } else if metadata.is_dir() {
                 found.extend(everything(&path));
             }
-            found.insert(path, (text, metadata.permissions().readonly()));
+            found.insert(path, (text, metadata.permissions()));
         }
         found
     }
@@ -623,12 +677,15 @@ mod tests {
             ("note", "note: old"),
             ("input", "note: read"),
             ("mine", "a user's own"),
+            ("locked", "note: whole"),
             ("empty", ""),
             ("far/note", "note: far"),
         ] {
             fs::write(at(name), text).expect("writes");
         }
-        fs::set_permissions(at("note"), fs::Permissions::from_mode(0o440)).expect("is ours");
+        for (name, mode) in [("note", 0o600), ("locked", 0o444)] {
+            fs::set_permissions(at(name), fs::Permissions::from_mode(mode)).expect("is ours");
+        }
         fs::hard_link(at("input"), at("hard")).expect("links");
         for (target, link) in [
             ("note", "link"),
@@ -661,6 +718,9 @@ mod tests {
             ("DIR/new", no, ""),
             ("DIR/empty", no, ""),
             ("DIR/note", no, ""),
+            ("DIR/locked", no, "is read-only"),
+            ("DIR/new/", no, "is a directory"),
+            ("DIR/new/.", no, "is a directory"),
             ("DIR/deep/er/new", no, ""),
             ("DIR/deep/../note", no, ""),
             ("DIR/near/note", no, ""),
@@ -733,10 +793,10 @@ mod tests {
             if words.is_empty() {
                 let Output { file, .. } = Output::look(&path).expect("leads there");
                 let file = file.expect("is no stdout");
-                let (text, is_read_only) = after.remove(&file).expect("is written");
+                let (text, mode) = after.remove(&file).expect("is written");
                 assert_eq!(text, "note: new");
                 let was = before.remove(&file);
-                assert_eq!(is_read_only, was.is_some_and(|(_, r)| r), "{path:?}");
+                assert_eq!(was.map_or(mode.clone(), |(_, mode)| mode), mode, "{path:?}");
                 after.retain(|path, _| !path.starts_with(dir.path().join("deep")));
             }
             assert_eq!(after, before, "{path:?}");

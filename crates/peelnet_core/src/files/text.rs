@@ -110,6 +110,30 @@ fn is_hidden(c: char) -> bool {
 }
 
 /// Lower-case hexadecimal digits, as hashes are written.
+/// Names as near to one that is not known as a slip of the hand: those that begin with it, or are spelt nearly so; the nearest first.
+pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Vec<&'a str> {
+    /// Of Jaro and Winkler's similarity, 0 … 1: `wbiot` has 0.82 of `wboit-eq9`, `smoke` 0.5 of `cups`.
+    const LEAST: f64 = 0.8;
+    const MOST: usize = 5;
+    let name = name.to_lowercase().replace('_', "-");
+    let similarity = |other: &str| strsim::jaro_winkler(&name, other);
+    let scored = known.into_iter().map(|other| (similarity(other), other));
+    let mut near: Vec<_> = scored.filter(|(score, _)| *score >= LEAST).collect();
+    near.sort_by(|a, b| b.0.total_cmp(&a.0));
+    near.into_iter()
+        .map(|(_, other)| other)
+        .take(MOST)
+        .collect()
+}
+
+/// What stands instead of a name that is not known: the nearest ones, or all.
+pub fn known_names(name: &str, known: &[&str]) -> String {
+    match nearest(name, known.iter().copied()) {
+        none if none.is_empty() => format!("there are: {}", known.join(", ")),
+        near => format!("did you mean {}?", near.join(", ")),
+    }
+}
+
 pub fn hex(bytes: &[u8]) -> String {
     bytes.iter().map(|b| format!("{b:02x}")).collect()
 }

@@ -42,6 +42,7 @@ fn header(format: Format) -> Header {
         name: name.to_owned(),
         file: format!("scenes/{name}.toml"),
         sha256: "ab".repeat(32),
+        content: String::new(),
         held_out,
         effects: vec!["opaque".to_owned()],
     };

@@ -7,7 +7,7 @@ use super::{
     spec::MethodSpec,
 };
 use crate::RenderError;
-use peelnet_core::absorbance::DepthWarp;
+use peelnet_core::{absorbance::DepthWarp, files::known_names};
 use peelnet_model::Model;
 use std::{collections::BTreeMap, str::FromStr};
 
@@ -154,9 +154,10 @@ impl FromStr for MethodSpec {
         };
         let Some(method) = METHODS.iter().find(is_named) else {
             let known: Vec<String> = METHODS.iter().map(Method::usage).collect();
+            let known: Vec<&str> = known.iter().map(String::as_str).collect();
             return Err(RenderError::WrongValue(format!(
-                "there is no method '{name}'; there are: {}",
-                known.join(", ")
+                "there is no method '{name}'; {}",
+                known_names(name, &known)
             )));
         };
         let mut spec = Self {

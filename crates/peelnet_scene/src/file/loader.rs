@@ -57,7 +57,7 @@ impl<'a> Loader<'a> {
     ) -> Result<Arc<Mesh>, SceneError> {
         let key = match mesh {
             Reference::Made(shape) => format!("{shape:?}, UVs {has_uvs}"),
-            Reference::File(name) => name.display().to_string(),
+            Reference::File(name) => self.files.identity(&self.beside(name)),
         };
         let known = match (self.meshes.get(&key), mesh) {
             (Some(known), _) => Arc::clone(known),
@@ -90,7 +90,8 @@ impl<'a> Loader<'a> {
             return Err(self.value(field, message));
         };
         // The scene file's lights and cameras replace those of the mesh.
-        Ok(load(&file, &mut self.files)?.mesh)
+        let loaded = self.files.within(&file, |files| load(&file, files));
+        Ok(loaded?.mesh)
     }
 
     /// The texture of a key of a table: of a file, read once, or of a pattern, made once for each key.
@@ -102,7 +103,7 @@ impl<'a> Loader<'a> {
     ) -> Result<Arc<Texture>, SceneError> {
         let name = match map {
             Reference::Made(pattern) => format!("{key} = {pattern:?}"),
-            Reference::File(name) => name.display().to_string(),
+            Reference::File(name) => self.files.identity(&self.beside(name)),
         };
         if let Some(known) = self.textures.get(&name) {
             return Ok(Arc::clone(known));

@@ -17,7 +17,7 @@ const VIEWS: u32 = 3;
 
 /// A mesh file with its own lights and cameras; where it has none, with two lights, and a camera that sees all of it from three sides.
 pub(super) fn load(path: &Path, load: Load, mut files: Files<'_>) -> Result<Scene, SceneError> {
-    let file = load(path, &mut files)?;
+    let file = files.within(path, |files| load(path, files))?;
     let mut lights = file.lights;
     let fail = |message: String| SceneError::file(path, None, message);
     let materials = file.mesh.parts.iter().map(|p| p.material.clone());
@@ -56,6 +56,7 @@ pub(super) fn load(path: &Path, load: Load, mut files: Files<'_>) -> Result<Scen
     Ok(Scene {
         source: path.to_owned(),
         hash: files.hash(),
+        content: files.content(),
         warnings: files.warnings.texts(),
         files: files.used,
         views,

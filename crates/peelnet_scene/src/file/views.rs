@@ -54,8 +54,9 @@ fn light(raw: &RawLight) -> Result<Light, String> {
         (Some(position), None) => Source::Point(position.into()),
         // The file gives the direction of the light, `Source` the direction towards it.
         (None, Some(direction)) => {
-            let toward = (-Vec3::from(direction)).try_normalize();
-            Source::Toward(toward.unwrap_or(Vec3::NAN))
+            // In 64 bits, where squares of all 32-bit numbers are finite, and none but that of 0 is 0.
+            let toward = (-Vec3::from(direction).as_dvec3()).try_normalize();
+            Source::Toward(toward.map_or(Vec3::NAN, |toward| toward.as_vec3()))
         }
         _ => return Err("needs either a position or a direction".into()),
     };

@@ -106,6 +106,7 @@ fn scene(name: &str, held_out: bool) -> SceneEntry {
         name: name.to_owned(),
         file: format!("{name}.toml"),
         sha256: "0".repeat(64),
+        content: String::new(),
         held_out,
         effects: Vec::new(),
     }

@@ -18,7 +18,7 @@ use std::collections::BTreeSet;
 
 pub(super) fn run(context: &Context<'_>, args: &DesignsArgs) -> Result<(), Failure> {
     let inputs = args.scenes.iter().chain(&args.datasets).chain(&args.file);
-    let mut outputs = context.results::<Designs>(inputs, &args.out)?;
+    let outputs = context.results::<Designs>(inputs, &args.out)?;
     let entries = match &args.file {
         Some(path) => designs::read(path)?,
         None => designs::shipped(),
@@ -28,7 +28,7 @@ pub(super) fn run(context: &Context<'_>, args: &DesignsArgs) -> Result<(), Failu
         config.check()?;
     }
     let scenes = context.scenes(&args.scenes)?;
-    context.begin(&mut outputs, &scenes)?;
+    let _begun = context.begin(outputs, &scenes)?;
     let datasets = args.datasets.iter().map(Dataset::open);
     let datasets = datasets.collect::<Result<Vec<_>, _>>()?;
     let trained_on = check_scenes(context, &scenes, &datasets)?;

@@ -6,7 +6,7 @@ use base64::{
     engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig},
 };
 use peelnet_core::files::printable;
-use std::path::Path;
+use std::{path::Path, sync::Arc};
 
 /// Base64 with or without padding, as exporters write it.
 const BASE64: GeneralPurpose = GeneralPurpose::new(
@@ -16,9 +16,9 @@ const BASE64: GeneralPurpose = GeneralPurpose::new(
 
 impl Reader<'_, '_> {
     /// The bytes that a URI names or holds. The `gltf` crate reads from the file system only, so it is not asked.
-    pub fn read_uri(&mut self, uri: &str, limit: u64) -> Result<Vec<u8>, String> {
+    pub fn read_uri(&mut self, uri: &str, limit: u64) -> Result<Arc<Vec<u8>>, String> {
         if let Some(data) = uri.strip_prefix("data:") {
-            return read_data(data, limit);
+            return read_data(data, limit).map(Arc::new);
         }
         let fail = |what: &dyn std::fmt::Display| format!("'{}' {what}", printable(uri));
         let absolute = uri
@@ -30,7 +30,7 @@ impl Reader<'_, '_> {
         let name = absolute.unwrap_or(uri);
         let decoded = urlencoding::decode(name);
         let folder = self.path.parent().unwrap_or(Path::new("."));
-        let mut read = |name: &str| self.files.read(&folder.join(name), limit);
+        let mut read = |name: &str| self.files.buffer(&folder.join(name), limit);
         // Some exporters write names as they are, with percent signs that encode nothing.
         let found = match decoded {
             Ok(decoded) if decoded != name => read(&decoded).or_else(|e| read(name).map_err(|_| e)),
@@ -50,7 +50,9 @@ impl Reader<'_, '_> {
     ) -> Result<(), String> {
         for buffer in document.buffers() {
             let bytes = match buffer.source() {
-                gltf::buffer::Source::Bin => blob.take().ok_or("there is no binary chunk")?,
+                gltf::buffer::Source::Bin => {
+                    Arc::new(blob.take().ok_or("there is no binary chunk")?)
+                }
                 gltf::buffer::Source::Uri(uri) => self.read_uri(uri, MAX_MESH)?,
             };
             let (index, held, needed) = (buffer.index(), bytes.len(), buffer.length());

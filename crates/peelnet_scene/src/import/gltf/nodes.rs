@@ -17,7 +17,7 @@ use std::{collections::HashMap, path::Path, sync::Arc};
 pub(super) struct Reader<'a, 'f> {
     pub path: &'a Path,
     pub files: &'a mut Files<'f>,
-    pub buffers: Vec<Vec<u8>>,
+    pub buffers: Vec<Arc<Vec<u8>>>,
     /// By number, and whether opacity is left out; `None` for those that cannot be drawn.
     pub images: HashMap<(usize, bool), Option<Arc<Texture>>>,
     /// What stands before what the file uses and is not drawn.

@@ -34,7 +34,7 @@ impl Reader<'_, '_> {
         let fail = |message: String| self.fail(format!("{place}{message}"));
         check_accessors(primitive).map_err(fail)?;
         let buffers = &self.buffers;
-        let reader = primitive.reader(|b| buffers.get(b.index()).map(Vec::as_slice));
+        let reader = primitive.reader(|b| buffers.get(b.index()).map(|bytes| &bytes[..]));
         let positions = reader.read_positions();
         let positions =
             positions.ok_or_else(|| fail(" has no positions; export it again".into()))?;
