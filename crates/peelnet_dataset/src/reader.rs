@@ -269,7 +269,11 @@ impl Batches<'_> {
                     None => return Ok((!batch.is_empty()).then_some(batch)),
                 },
             };
-            let wanted = self.rows_per_batch.saturating_sub(batch.len());
+            // As many again of a pixel that fills the batch: looking for its end takes as long as there are rows.
+            let wanted = match self.rows_per_batch.saturating_sub(batch.len()) {
+                0 => batch.len(),
+                wanted => wanted,
+            };
             let ended = part.read(wanted.clamp(1, CHUNK_ROWS), &mut batch)? == 0;
             let is_full = batch.len() >= self.rows_per_batch;
             // Parts are views: a pixel never goes on in the next one. Of a part that goes on, its last pixel may.
