@@ -100,13 +100,19 @@ pub fn fuzz(seconds: &str) -> Outcome {
     run("cargo run --package peelnet_tests --example write_seeds")?;
     // One for each reader of files that users hand over.
     for target in ["scene", "obj", "gltf", "ply", "stl", "dataset", "model"] {
-        println!("\n== {target}, {seconds} s");
-        // A dictionary of what the formats say, little memory, and no input that takes long. A toolchain is named to the rustup's cargo only.
-        let line = format!(
-            "+nightly fuzz run {target} -- -max_total_time={seconds} -dict=fuzz/formats.dict \
-             -rss_limit_mb=1024 -timeout=10 -print_final_stats=1"
-        );
-        start(&mut program_in_root("cargo", &line))?;
+        // Errors of memory, with what finding them takes; then what an input of less than 1 MB may take: 256 MB and a second.
+        for (sanitizer, limits) in [
+            ("address", "-rss_limit_mb=1024 -timeout=10"),
+            ("none", "-rss_limit_mb=256 -timeout=1 -max_len=1000000"),
+        ] {
+            println!("\n== {target}, sanitizer {sanitizer}, {seconds} s");
+            // A dictionary of what the formats say. A toolchain is named to the rustup's cargo only.
+            let line = format!(
+                "+nightly fuzz run --sanitizer {sanitizer} {target} -- -max_total_time={seconds} \
+                 -dict=fuzz/formats.dict {limits} -print_final_stats=1"
+            );
+            start(&mut program_in_root("cargo", &line))?;
+        }
     }
     Ok(())
 }

@@ -59,8 +59,12 @@ pub fn methods(text: &str) -> Result<Option<Vec<MethodSpec>>, String> {
         }
     }
     let methods = names.iter().map(|name| name.parse());
-    let methods: Result<_, peelnet_render::RenderError> = methods.collect();
-    methods.map(Some).map_err(|e| e.to_string())
+    let methods: Result<Vec<MethodSpec>, peelnet_render::RenderError> = methods.collect();
+    let methods = methods.map_err(|e| e.to_string())?;
+    match (1..methods.len()).find(|&k| methods[..k].contains(&methods[k])) {
+        Some(k) => Err(format!("{} is named twice; name it once", methods[k])),
+        None => Ok(Some(methods)),
+    }
 }
 
 /// The value of one of these names.
@@ -101,5 +105,6 @@ mod tests {
         assert!(names.eq(["mboit4:bias=1e-6,own=out", "wboit-eq9"]));
         assert_eq!(methods("all"), Ok(None));
         assert!(methods("mboit4,nothing").is_err());
+        assert!(methods("mboit4,wboit-eq9,mboit4").is_err());
     }
 }

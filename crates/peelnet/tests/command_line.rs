@@ -92,7 +92,10 @@ const REFUSED: &str = "
     2 | train sound --out m --lr 1e-30 | learning_rate & --lr
     2 | export m.safetensors --out w.hlsl --lang msl | --out w.hlsl: the ending says hlsl, --lang says msl & .metal
     1 | export m.safetensors --out other.glsl | --out other.glsl: the description beside it is that of another network's other.wgsl
-    2 | bench two.toml --methods blended,blended --out b | method blended is named twice
+    2 | bench two.toml --methods blended,blended --out b | blended is named twice
+    2 | stress --methods blended,blended | blended is named twice
+    1 | train sound sound --out m --recipe thesis | sound and sound hold the same rows
+    1 | render utf16.toml --out a.png | utf16.toml: is no text in UTF-8
     1 | inspect spy/spy.gltf | secret.txt & lies outside of the folder & --files-from
 
     1 | render missing.toml --out a.png | missing.toml
@@ -247,6 +250,7 @@ fn folder() -> Folder {
     std::fs::set_permissions(folder.at("locked.png"), mode).unwrap();
     folder.write("foreign.exr", b"\x76\x2f\x31\x01\x02\0\0\0a user's own");
     folder.write("secret.txt", [b's'; 64]);
+    folder.write("utf16.toml", b"\xff\xfen\0");
     folder.write("spy/spy.gltf", SPY);
     // Our own images, which may be replaced elsewhere, are textures of scenes.
     folder.prints("render two.toml --size 8x8 --out own.png");

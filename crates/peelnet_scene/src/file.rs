@@ -154,10 +154,8 @@ const MUCH_BRIGHTER: f32 = 16.0;
 
 fn parse(path: &Path, files: &mut Files<'_>) -> Result<RawScene, SceneError> {
     let bytes = files.read(path, MAX_TEXT)?;
-    let text = String::from_utf8(bytes).map_err(|e| SceneError::Read {
-        path: path.to_owned(),
-        source: io::Error::new(io::ErrorKind::InvalidData, e.utf8_error()),
-    })?;
+    let text = String::from_utf8(bytes)
+        .map_err(|_| SceneError::file(path, None, "is no text in UTF-8; save it as that"))?;
     // A byte order mark is no TOML, but some editors write one.
     let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
     if let Ok(mut table) = toml::from_str::<toml::Table>(text) {

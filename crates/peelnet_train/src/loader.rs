@@ -216,8 +216,18 @@ fn scene_name<'a>(dataset: &'a Dataset, part: &Part) -> &'a str {
     &scene_entry(dataset, part).name
 }
 
-/// A scene under two names would be trained on under one and judge under the other.
+/// A dataset that is named twice would count twice, and a scene under two names would be trained on under one and judge under the other.
 fn check_contents(datasets: &[Dataset]) -> Result<(), TrainError> {
+    for (k, dataset) in datasets.iter().enumerate() {
+        let mut others = datasets[..k].iter();
+        if let Some(first) = others.find(|other| other.hash() == dataset.hash()) {
+            return Err(TrainError::Failed(format!(
+                "{} and {} hold the same rows; name one of them",
+                first.path().display(),
+                dataset.path().display()
+            )));
+        }
+    }
     let mut names: BTreeMap<&str, &SceneEntry> = BTreeMap::new();
     let scenes = datasets.iter().flat_map(|d| &d.manifest().scenes);
     for scene in scenes.filter(|scene| !scene.content.is_empty()) {
