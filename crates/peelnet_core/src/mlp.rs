@@ -54,9 +54,7 @@ impl Mlp {
             return Err("the network has no layers".into());
         }
         for (i, layer) in layers.iter().enumerate() {
-            let Layer {
-                inputs, outputs, ..
-            } = *layer;
+            let (inputs, outputs) = (layer.inputs, layer.outputs);
             let [weights, biases] = [&layer.weights, &layer.bias].map(Vec::len);
             let before = if i > 0 { layers[i - 1].outputs } else { inputs };
             let wrong = if weights != inputs * outputs {

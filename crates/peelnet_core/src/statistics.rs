@@ -125,6 +125,11 @@ impl SumPrecision {
     }
 }
 
+/// `b`, `b ζ`, `b ζ²` ….
+pub(crate) fn moments_of(b: f64, zeta: f64) -> impl Iterator<Item = f64> {
+    std::iter::successors(Some(b), move |power| Some(power * zeta))
+}
+
 /// The sums and extremes of one pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Statistics {
@@ -138,10 +143,8 @@ impl Statistics {
     pub fn moments(fragments: &[Point], precision: SumPrecision) -> [f64; 5] {
         let mut moments = [0.0; 5];
         for &(b, zeta, _) in fragments {
-            let mut power = b;
-            for sum in &mut moments {
-                *sum = precision.add(*sum, power);
-                power *= zeta;
+            for (sum, moment) in moments.iter_mut().zip(moments_of(b, zeta)) {
+                *sum = precision.add(*sum, moment);
             }
         }
         moments
@@ -152,10 +155,8 @@ impl Statistics {
     pub fn without(&self, fragments: &[(f64, f64)]) -> [f64; 5] {
         let mut m = self.moments;
         for &(b, zeta) in fragments {
-            let mut power = b;
-            for sum in &mut m {
-                *sum -= power;
-                power *= zeta;
+            for (sum, moment) in m.iter_mut().zip(moments_of(b, zeta)) {
+                *sum -= moment;
             }
         }
         m[0] = m[0].max(0.0);

@@ -41,19 +41,6 @@ impl Weight {
         Self::Papakostas,
     ];
 
-    /// The weight's name in method names: `wboit-<name>`.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Eq7 => "eq7",
-            Self::Eq8 => "eq8",
-            Self::Eq9 => "eq9",
-            Self::Eq10 { .. } => "eq10",
-            Self::InversePower { .. } => "inverse-power",
-            Self::Smoke { .. } => "smoke",
-            Self::Papakostas => "papakostas",
-        }
-    }
-
     /// `z` is linear depth in scene units, `alpha` opacity, `window_depth` 0 … 1.
     pub fn eval(self, z: f32, alpha: f32, window_depth: f32) -> f32 {
         match self {

@@ -4,7 +4,7 @@
 //! ([`Outputs`]): an input is not replaced, nor a file of another kind, unless the user forces it. What was allowed then still holds just
 //! before the rename, or nothing is replaced ([`write_whole`]).
 
-use crate::files::{read_head, shown};
+use super::{invalid, read_head, shown};
 use std::{
     collections::{BTreeMap, BTreeSet},
     fs::{self, Metadata},
@@ -35,15 +35,9 @@ fn local(path: &Path) -> io::Result<&Path> {
         return Ok(path);
     }
     let address = path.to_str();
-    address
-        .and_then(|address| address.strip_prefix("file://"))
-        .filter(|path| path.starts_with('/'))
-        .map(Path::new)
-        .ok_or_else(|| invalid("is no file of this machine; name one"))
-}
-
-fn invalid(why: &str) -> io::Error {
-    io::Error::new(io::ErrorKind::InvalidInput, why)
+    let file = address.and_then(|address| address.strip_prefix("file://"));
+    let file = file.filter(|path| path.starts_with('/')).map(Path::new);
+    file.ok_or_else(|| invalid("is no file of this machine; name one"))
 }
 
 /// Where an absolute path of a file leads. Its last part stays, so that a link is seen as one.
@@ -445,10 +439,8 @@ impl Outputs {
     ) -> Result<(), Refused> {
         let entries = fs::read_dir(folder).into_iter().flatten().flatten();
         let mut names: Vec<PathBuf> = entries.map(|e| e.file_name().into()).collect();
-        names.retain(|name| {
-            name.extension()
-                .is_some_and(|e| e.eq_ignore_ascii_case(ending))
-        });
+        let is_like = |name: &PathBuf| Some(name.extension()?.eq_ignore_ascii_case(ending));
+        names.retain(|name| is_like(name) == Some(true));
         names.sort();
         self.folder(setting, folder, names.iter().map(|name| (name, kind)))?;
         let found = || {

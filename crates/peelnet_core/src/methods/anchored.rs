@@ -13,8 +13,8 @@ use crate::{
     guards::FILL_MAX,
     methods::{known::KnownFragment, moments::power::four_moment_bounds},
     statistics::{
-        self, DEPTH_CODES, FARTHEST_CODE, NEAREST_CODE, SAME_CODE, Statistics, SumPrecision,
-        depth_code, zeta_of_code,
+        DEPTH_CODES, FARTHEST_CODE, NEAREST_CODE, SAME_CODE, Statistics, SumPrecision, depth_code,
+        zeta_of_code,
     },
 };
 
@@ -99,16 +99,14 @@ pub fn known_fragments(
     precision: SumPrecision,
 ) -> Vec<KnownFragment<Residual>> {
     let points = super::points(fragments, warp);
-    let visible = || points.iter().filter(|point| point.2);
+    let visible = points.iter().filter(|point| point.2);
     // Without a visible fragment the targets keep their clear values.
-    let first = visible().map(|p| depth_code(p.1)).min();
-    let first = first.unwrap_or(statistics::DEPTH_CODES - 1);
-    let near = visible()
-        .map(|&(b, z, _)| NEAREST_CODE.mirrored(z, b))
-        .max();
-    let near = near.unwrap_or(0);
-    let far = visible().map(|&(b, z, _)| FARTHEST_CODE.level(z, b)).max();
-    let far = far.unwrap_or(0);
+    let (mut first, mut near, mut far) = (DEPTH_CODES - 1, 0, 0);
+    for &(b, zeta, _) in visible {
+        first = first.min(depth_code(zeta));
+        near = near.max(NEAREST_CODE.mirrored(zeta, b));
+        far = far.max(FARTHEST_CODE.level(zeta, b));
+    }
     let s = Statistics {
         moments: Statistics::moments(&points, precision),
         nearest: zeta_of_code(first),

@@ -10,7 +10,7 @@ pub mod power;
 mod roots;
 pub mod trigonometric;
 
-use crate::absorbance::DepthWarp;
+use crate::{absorbance::DepthWarp, statistics::moments_of};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Basis {
@@ -72,10 +72,8 @@ impl Moments {
     pub fn add(&mut self, b: f64, zeta: f64) {
         match self.basis {
             Basis::Power(_) => {
-                let mut power = b;
-                for sum in &mut self.sums {
-                    *sum += power;
-                    power *= zeta;
+                for (sum, moment) in self.sums.iter_mut().zip(moments_of(b, zeta)) {
+                    *sum += moment;
                 }
             }
             Basis::Trigonometric(_) => trigonometric::add(&mut self.sums, b, zeta),

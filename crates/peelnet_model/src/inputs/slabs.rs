@@ -91,10 +91,8 @@ impl NetworkInputs for SlabInputs {
     fn known(&self, pixel: &Observed<'_>) -> Vec<KnownFragment<Vec<f64>>> {
         let (warp, design) = (&pixel.warp, self.design);
         let known = slabs::known_fragments(pixel.fragments, warp, design, pixel.precision);
-        let known = known.into_iter();
-        known
-            .map(|f| f.map(|interior| values(self.features, interior)))
-            .collect()
+        let read = |f: KnownFragment<_>| f.map(|interior| values(self.features, interior));
+        known.into_iter().map(read).collect()
     }
 
     fn known_apart(&self) -> bool {
@@ -116,14 +114,10 @@ impl NetworkInputs for SlabInputs {
         let slabs = Slabs::gather(&points, self.design, pixel.precision);
         let [mut a, mut firsts, mut near, mut far] = [const { Vec::new() }; 4];
         for slab in slabs.stored() {
-            for (values, value) in [&mut a, &mut firsts, &mut near, &mut far]
-                .into_iter()
-                .zip(slab)
-            {
-                values.push(value as f32);
-            }
+            let all = [&mut a, &mut firsts, &mut near, &mut far].into_iter();
+            all.zip(slab).for_each(|(all, x)| all.push(x as f32));
         }
-        let range = slabs.range().stored().map(|x| x as f32).to_vec();
+        let range = slabs.range.stored().map(|x| x as f32).to_vec();
         let mut targets = vec![("range", range)];
         match self.layout() {
             Layout::Small => {
@@ -132,9 +126,8 @@ impl NetworkInputs for SlabInputs {
                 targets.extend([("absorbances", a), ("nearest", near), ("firsts", firsts)]);
             }
             Layout::Medium => {
-                for (values, first) in [&mut a, &mut near, &mut far].into_iter().zip(firsts) {
-                    values.push(first);
-                }
+                let all = [&mut a, &mut near, &mut far].into_iter();
+                all.zip(firsts).for_each(|(all, first)| all.push(first));
                 targets.extend([("absorbances", a), ("nearest", near), ("farthest", far)]);
             }
             Layout::Large => targets.extend([
@@ -150,11 +143,7 @@ impl NetworkInputs for SlabInputs {
 
 /// What surrounds a network, or any guess between the ends of slabs, in a layout.
 pub const fn slab_surroundings(layout: Layout) -> &'static Surroundings {
-    match layout {
-        Layout::Small => &SMALL,
-        Layout::Medium => &MEDIUM,
-        Layout::Large => &LARGE,
-    }
+    [&SMALL, &MEDIUM, &LARGE][layout as usize]
 }
 
 const fn modules(statistics: &'static str) -> [&'static str; 7] {
