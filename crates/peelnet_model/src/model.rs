@@ -29,13 +29,11 @@ impl Model {
     /// If the file cannot be read, is not a peelnet model, or [`Model::check`] refuses what it holds.
     pub fn load(path: impl AsRef<Path>) -> Result<Self, ModelError> {
         let path = path.as_ref();
-        let bytes =
-            peelnet_core::files::read(path, MAX_BYTES).map_err(|source| ModelError::Io {
-                path: path.to_owned(),
-                action: "read the model",
-                source,
-            })?;
-        Self::from_bytes(&bytes, path)
+        let bytes = peelnet_core::files::read(path, MAX_BYTES);
+        Self::from_bytes(
+            &bytes.map_err(ModelError::io(path, "read the model"))?,
+            path,
+        )
     }
 
     /// The network that ships for a recipe.
@@ -71,11 +69,8 @@ impl Model {
     pub fn save(&self, path: impl AsRef<Path>) -> Result<(), ModelError> {
         let path = path.as_ref();
         let bytes = self.to_bytes().map_err(ModelError::invalid(path))?;
-        peelnet_core::files::write_whole(path, &bytes).map_err(|source| ModelError::Io {
-            path: path.to_owned(),
-            action: "write the model",
-            source,
-        })
+        peelnet_core::files::write_whole(path, &bytes)
+            .map_err(ModelError::io(path, "write the model"))
     }
 
     /// The bytes of the model's file: the same for the same model.
@@ -122,10 +117,10 @@ impl Model {
             )));
         }
         let (network, output) = (self.mlp.outputs(), self.meta.output);
-        let expected = output.count();
-        if network != expected {
+        if network != output.count() {
             return Err(Problem(format!(
-                "the network gives {network} outputs where {output} has {expected}"
+                "the network gives {network} outputs where {output} has {}",
+                output.count()
             )));
         }
         Ok(())
