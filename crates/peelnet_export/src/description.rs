@@ -2,7 +2,7 @@
 
 use crate::language::Language;
 use peelnet_model::Recipe;
-use peelnet_model::inputs::{Blend, Pass, Surroundings, Target};
+use peelnet_model::inputs::{Blend, Pass, Target};
 use serde::Serialize;
 
 /// What a renderer must do around an exported text.
@@ -30,12 +30,8 @@ const RULES: &[&str] = &[
 impl Description {
     /// Of the networks of a recipe.
     pub fn new(recipe: Recipe) -> Self {
-        let Surroundings {
-            before,
-            passes,
-            resolve,
-            ..
-        } = *recipe.inputs.surroundings();
+        let surroundings = recipe.inputs.surroundings();
+        let (passes, resolve) = (surroundings.passes, surroundings.resolve);
         let targets = passes.iter().flat_map(|pass| pass.targets);
         let mut names: Vec<&str> = targets.map(|target| target.name).collect();
         names.extend(passes.iter().flat_map(|pass| pass.reads));
@@ -46,7 +42,7 @@ impl Description {
             }
         }
         Self {
-            before,
+            before: surroundings.before,
             passes,
             resolve,
             resolve_reads,
@@ -67,11 +63,8 @@ impl Description {
             lines.push(format!(
                 "{k}. Pass \"{name}\": draw all transparent surfaces, in any order. {compute}"
             ));
-            lines.extend(
-                pass.targets
-                    .iter()
-                    .map(|target| target_line(target, language)),
-            );
+            let targets = pass.targets.iter();
+            lines.extend(targets.map(|target| target_line(target, language)));
         }
         lines.push(format!(
             "{}. Resolve: {} is the colour of the pixel, and its coverage in alpha.",

@@ -25,10 +25,9 @@ fn names<'a>(all: impl ExactSizeIterator<Item = Cow<'a, str>>) -> String {
     let more = all.len().saturating_sub(MAX_NAMES);
     let shown: Vec<Cow<'_, str>> = all.take(MAX_NAMES).collect();
     let shown = shown.join(", ");
-    if more == 0 {
-        shown
-    } else {
-        format!("{shown} and {more} more")
+    match more {
+        0 => shown,
+        _ => format!("{shown} and {more} more"),
     }
 }
 
@@ -61,11 +60,10 @@ fn about(model: &Model, language: Language) -> Vec<String> {
     let meta = &model.meta;
     let (low, high) = meta.output.range();
     let answer = match meta.output {
-        Output::Transmittance => format!(
-            "transmittance in front, kept in {} .. {}",
-            float(low),
-            float(high)
-        ),
+        Output::Transmittance => {
+            let [low, high] = [low, high].map(float);
+            format!("transmittance in front, kept in {low} .. {high}")
+        }
         Output::AnchoredShare | Output::AnchoredShareSeparateEnds => {
             "transmittance of the rest, exp(-rest * share) with rest = root_absorbance^2 and share in 0 .. 1"
                 .into()
@@ -128,8 +126,8 @@ fn provenance(model: &Model) -> [String; 3] {
         ("validation", meta.losses.validation),
         ("test", meta.losses.test),
     ];
-    let losses = losses.iter();
-    let losses = losses.filter_map(|(name, loss)| Some(format!("{name} {:.6}", (*loss)?)));
+    let losses = losses.into_iter();
+    let losses = losses.filter_map(|(name, loss)| Some(format!("{name} {:.6}", loss?)));
     let losses = match losses.collect::<Vec<_>>() {
         none if none.is_empty() => "unknown".to_owned(),
         losses => losses.join(", "),

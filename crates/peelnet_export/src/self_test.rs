@@ -88,10 +88,9 @@ impl SelfTest {
     /// As lines of a comment; `function` is the network's.
     pub(crate) fn lines(&self, function: &str) -> Vec<String> {
         let mut lines = vec!["Self-tests, to some roundings of 32 bits; weights and colours also to those of 16-bit targets.".to_owned()];
-        let points = self.network.iter();
-        lines.extend(
-            points.map(|p| format!("{function}({}) = {}", list(&p.inputs), list(&p.answers))),
-        );
+        for Point { inputs, answers } in &self.network {
+            lines.push(format!("{function}({}) = {}", list(inputs), list(answers)));
+        }
         let Some(pixel) = &self.pixel else {
             return lines;
         };
