@@ -87,10 +87,8 @@ impl Display {
         egui: &RenderState,
         size: [u32; 2],
     ) -> Result<wgpu::TextureView, GpuError> {
-        if let Some((view, _)) = self
-            .target
-            .as_ref()
-            .filter(|(view, _)| size_of(view) == size)
+        if let Some((view, _)) = &self.target
+            && size_of(view) == size
         {
             return Ok(view.clone());
         }

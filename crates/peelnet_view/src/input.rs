@@ -7,6 +7,7 @@ use crate::{
     stage::{Files, Source},
 };
 use egui::{Context, Key, Modifiers};
+use peelnet_core::files::shown;
 use peelnet_render::MethodSpec;
 use peelnet_scene::file::ENDINGS;
 use std::{
@@ -54,9 +55,7 @@ fn find_file(paths: &[PathBuf]) -> Result<&PathBuf, String> {
     let mut endings = std::iter::once(MODEL).chain(ENDINGS);
     let found = endings.find_map(|wanted| paths.iter().find(|path| has_ending(path, wanted)));
     found.ok_or_else(|| {
-        let name = paths
-            .first()
-            .map_or("nothing".into(), |p| peelnet_core::files::shown(p));
+        let name = paths.first().map_or("nothing".into(), |p| shown(p));
         let scenes = ENDINGS.map(|e| format!(".{e}")).join(", ");
         format!("{name}: not a scene or a network; drop a {scenes} or .{MODEL} file")
     })
@@ -104,11 +103,8 @@ impl App {
             self.next_method(ui.input(|i| i.events.iter().any(is_shifted)));
         }
         if pressed(Key::C) {
-            let mut after = MODES
-                .iter()
-                .skip_while(|m| m.0 != self.compare.mode)
-                .skip(1);
-            self.compare.mode = after.next().unwrap_or(&MODES[0]).0;
+            let now = MODES.iter().position(|m| m.0 == self.compare.mode);
+            self.compare.mode = MODES[now.map_or(0, |k| k + 1) % MODES.len()].0;
         }
         if pressed(Key::F) {
             self.fit();
