@@ -11,7 +11,7 @@ use crate::{
 };
 use peelnet_core::files::{printable, printable_lines};
 use peelnet_core::tolerance::EXPORT_F16;
-use peelnet_model::{Model, Output};
+use peelnet_model::{DatasetRef, Model, Output};
 use std::borrow::Cow;
 
 /// Says in a text who wrote it.
@@ -110,17 +110,15 @@ fn about(model: &Model, language: Language) -> Vec<String> {
 /// The data that it was trained on, and its errors.
 fn provenance(model: &Model) -> [String; 3] {
     let meta = &model.meta;
-    let data = meta.dataset.as_ref().map_or_else(
-        || "Trained on: unknown.".to_owned(),
-        |d| {
-            format!(
-                "Trained on {} rows of {} (dataset {}).",
-                d.rows,
-                names(d.scenes.iter().map(|scene| printable(scene))),
-                printable(&d.hash)
-            )
-        },
-    );
+    let mut data = "Trained on: unknown.".to_owned();
+    if let Some(DatasetRef {
+        rows, hash, scenes, ..
+    }) = &meta.dataset
+    {
+        let (hash, scenes) = (printable(hash), scenes.iter().map(|scene| printable(scene)));
+        let scenes = names(scenes);
+        data = format!("Trained on {rows} rows of {scenes} (dataset {hash}).");
+    }
     let losses = [
         ("training", meta.losses.train),
         ("validation", meta.losses.validation),

@@ -30,10 +30,8 @@ impl Model {
     pub fn load(path: impl AsRef<Path>) -> Result<Self, ModelError> {
         let path = path.as_ref();
         let bytes = peelnet_core::files::read(path, MAX_BYTES);
-        Self::from_bytes(
-            &bytes.map_err(ModelError::io(path, "read the model"))?,
-            path,
-        )
+        let bytes = bytes.map_err(ModelError::io(path, "read the model"))?;
+        Self::from_bytes(&bytes, path)
     }
 
     /// The network that ships for a recipe.
@@ -118,9 +116,9 @@ impl Model {
         }
         let (network, output) = (self.mlp.outputs(), self.meta.output);
         if network != output.count() {
+            let count = output.count();
             return Err(Problem(format!(
-                "the network gives {network} outputs where {output} has {}",
-                output.count()
+                "the network gives {network} outputs where {output} has {count}"
             )));
         }
         Ok(())

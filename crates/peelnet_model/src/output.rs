@@ -57,16 +57,13 @@ impl Output {
     /// # Panics
     /// With fewer inputs than such networks have.
     pub fn transmittance(self, raw_inputs: &[f64], answer: f64) -> f64 {
-        let absorbance = raw_inputs[0]
-            .clamp(0.0, ROOT_ABSORBANCE_LIMIT.into())
-            .powi(2);
-        let share = if self == Self::BoundedShare {
+        let root = raw_inputs[0].clamp(0.0, ROOT_ABSORBANCE_LIMIT.into());
+        let mut share = answer;
+        if self == Self::BoundedShare {
             let [low, high] = BOUNDS.map(|k| raw_inputs[k].clamp(0.0, 1.0));
-            low + (high - low) * answer
-        } else {
-            answer
-        };
-        (-absorbance * share).exp()
+            share = low + (high - low) * answer;
+        }
+        (-root.powi(2) * share).exp()
     }
 
     /// Keeps one value of the network in range; NaN becomes the smallest value.

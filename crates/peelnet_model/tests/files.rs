@@ -98,10 +98,8 @@ fn spoilt(tensors: impl Fn(&mut Tensors), json: impl Fn(&mut Value)) -> Vec<u8> 
         .collect();
     tensors(&mut all);
     let views = all.iter().map(|(name, (dtype, shape, data))| {
-        (
-            name.clone(),
-            TensorView::new(*dtype, shape.clone(), data).unwrap(),
-        )
+        let view = TensorView::new(*dtype, shape.clone(), data);
+        (name.clone(), view.unwrap())
     });
     let metadata = HashMap::from([("peelnet".to_owned(), value.to_string())]);
     safetensors::serialize(views, Some(metadata)).unwrap()

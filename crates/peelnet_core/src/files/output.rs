@@ -645,10 +645,17 @@ mod tests {
     #[cfg(unix)]
     #[test]
     fn only_what_is_allowed_is_replaced() {
-        use std::os::fd::AsRawFd as _;
+        use std::os::{fd::AsRawFd as _, unix::fs::symlink};
         type Change = fn(&Path) -> io::Result<()>;
         let no: Change = |_| Ok(());
         let appears: Change = |dir| fs::write(dir.join("new"), "note: another's");
+        let written: Change = |dir| fs::write(dir.join("empty"), "mine");
+        let replaced: Change = |dir| fs::rename(dir.join("mine"), dir.join("note"));
+        let linked: Change = |dir| symlink("mine", dir.join("new"));
+        let elsewhere: Change = |dir| {
+            fs::remove_file(dir.join("near"))?;
+            symlink(".", dir.join("near"))
+        };
         let cases: &[(&str, Change, &str)] = &[
             ("DIR/new", no, ""),
             ("DIR/empty", no, ""),
@@ -683,29 +690,10 @@ mod tests {
             ("DIR/new", appears, "another file came there"),
             ("DIR/deep/../new", appears, "another file came there"),
             ("DIR/note", |dir| fs::remove_file(dir.join("note")), ""),
-            (
-                "DIR/empty",
-                |dir| fs::write(dir.join("empty"), "mine"),
-                "the file changed",
-            ),
-            (
-                "DIR/note",
-                |dir| fs::rename(dir.join("mine"), dir.join("note")),
-                "the file changed",
-            ),
-            (
-                "DIR/new",
-                |dir| std::os::unix::fs::symlink("mine", dir.join("new")),
-                "is a link",
-            ),
-            (
-                "DIR/near/note",
-                |dir| {
-                    fs::remove_file(dir.join("near"))?;
-                    std::os::unix::fs::symlink(".", dir.join("near"))
-                },
-                "the file changed",
-            ),
+            ("DIR/empty", written, "the file changed"),
+            ("DIR/note", replaced, "the file changed"),
+            ("DIR/new", linked, "is a link"),
+            ("DIR/near/note", elsewhere, "the file changed"),
         ];
         for (path, change, words) in cases {
             let (dir, open) = folder();

@@ -238,8 +238,7 @@ mod tests {
                 let depth = random.log_between(0.1, 500.0);
                 Fragment::new(depth, random.between(0.02, 0.98), random.color())
             };
-            let mut f: Vec<_> = (0..12).map(&mut layer).collect();
-            crate::fragment::sort_front_to_back(&mut f);
+            let f = over::sorted(&(0..12).map(&mut layer).collect::<Vec<_>>());
             let points = points(&f);
             let exact = over::composite(&f, C0);
             let all = known_fragments(&points, &warp, SumPrecision::Exact);
@@ -252,12 +251,8 @@ mod tests {
                     (front - all[i].front) / x.absorbance
                 });
                 let same_level = all.iter().filter(|f| f.unknown.is_none()).count() > 2;
-                for k in 0..3 {
-                    assert!(
-                        same_level || (got[k] - exact[k]).abs() < 1e-5,
-                        "{seed}: {got:?} {exact:?}"
-                    );
-                }
+                let is_near = (0..3).all(|k| (got[k] - exact[k]).abs() < 1e-5);
+                assert!(same_level || is_near, "{seed}: {got:?} {exact:?}");
             }
         }
     }
