@@ -100,7 +100,6 @@ fn clip_depth(vertices: &[[f64; 4]; 3]) -> Vec<[f64; 4]> {
     polygon
 }
 
-/// Walks one clipped triangle row by row.
 fn walk(frame: &mut Frame, vertices: [[f64; 4]; 3], id: u32, offset: [f64; 2]) {
     let (w, h) = (frame.width as f64, frame.height as f64);
     // Screen position, then the two quantities that are linear on the screen: 1/w and z/w.

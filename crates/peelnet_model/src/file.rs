@@ -1,7 +1,6 @@
 //! The model as safetensors bytes, and files of them.
 
-use std::collections::HashMap;
-use std::fmt;
+use std::{collections::HashMap, fmt};
 
 use peelnet_core::files::Kind;
 use peelnet_core::mlp::{Activation, Layer, Mlp};

@@ -1,7 +1,6 @@
 //! What a model knows about itself.
 
-use std::collections::BTreeMap;
-use std::fmt;
+use std::{collections::BTreeMap, fmt};
 
 use num_traits::{Float, clamp};
 use peelnet_core::guards::{INPUT_LIMIT, RAW_LIMIT};

@@ -1,7 +1,6 @@
 //! A network and its metadata, and how it answers.
 
-use std::iter::Sum;
-use std::path::Path;
+use std::{iter::Sum, path::Path};
 
 use num_traits::{Float, cast};
 use peelnet_core::mlp::{Layer, Mlp};

@@ -123,11 +123,8 @@ impl Design {
 
     /// Bytes a pixel of all targets, colours included.
     pub fn bytes(&self) -> u32 {
-        let kept = self
-            .slabs
-            .iter()
-            .flat_map(|k| [true, k.mean, k.nearest, k.farthest]);
-        let channels: u32 = kept.map(u32::from).sum();
+        let kept = |k: &Kept| [true, k.mean, k.nearest, k.farthest];
+        let channels: u32 = self.slabs.iter().flat_map(kept).map(u32::from).sum();
         let range = if self.extent == Extent::Frame { 0 } else { 2 };
         range + 2 * channels + 8 * (1 + u32::from(self.apart))
     }
@@ -279,15 +276,11 @@ impl Slabs {
         let others = (slab.absorbance - absorbance).max(0.0);
         let kept = &self.design.slabs[place.slab];
         let records = self.design.records;
-        let known = if counts && kept.nearest && records.is_kept(place.near, slab.nearest) {
-            Some(0.0)
-        } else if counts && kept.farthest && records.is_kept(place.far, slab.farthest) {
-            Some(others)
-        } else {
-            None
-        };
-        if let Some(inside) = known {
-            return KnownFragment::known(before + inside);
+        if counts && kept.nearest && records.is_kept(place.near, slab.nearest) {
+            return KnownFragment::known(before);
+        }
+        if counts && kept.farthest && records.is_kept(place.far, slab.farthest) {
+            return KnownFragment::known(before + others);
         }
         let between = self.between(&place, slab, others);
         KnownFragment {
