@@ -66,10 +66,9 @@ impl Description {
             let targets = pass.targets.iter();
             lines.extend(targets.map(|target| target_line(target, language)));
         }
+        let (last, call) = (self.passes.len() + 1, language.expression(self.resolve));
         lines.push(format!(
-            "{}. Resolve: {} is the colour of the pixel, and its coverage in alpha.",
-            self.passes.len() + 1,
-            language.expression(self.resolve)
+            "{last}. Resolve: {call} is the colour of the pixel, and its coverage in alpha."
         ));
         lines.extend(self.rules.iter().map(|rule| format!("- {rule}")));
         lines
@@ -92,11 +91,7 @@ fn target_line(target: &Target, language: Language) -> String {
     } else {
         format!("{color} for rgb, {alpha} for alpha")
     };
-    format!(
-        "   {}: {}, cleared to {}, blending {blending}, from {}",
-        target.name,
-        target.format,
-        clear.join(", "),
-        language.expression(target.write)
-    )
+    let (name, format, clear) = (target.name, target.format, clear.join(", "));
+    let write = language.expression(target.write);
+    format!("   {name}: {format}, cleared to {clear}, blending {blending}, from {write}")
 }

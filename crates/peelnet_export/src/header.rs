@@ -75,35 +75,26 @@ fn about(model: &Model, language: Language) -> Vec<String> {
         }
         Output::Color => "linear RGB of all transparent fragments over black, kept in 0 .. 1".into(),
     };
+    let (mlp, version) = (&model.mlp, env!("CARGO_PKG_VERSION"));
+    let (topology, parameters, adds) = (mlp.topology(), mlp.parameters(), multiply_adds(mlp));
+    let (recipe, seed, epochs) = (meta.recipe, meta.seed, meta.epochs);
     let mut lines = vec![
-        format!(
-            "A learned weight for order-independent transparency. {EXPORTED_BY} {}.",
-            env!("CARGO_PKG_VERSION")
-        ),
+        format!("A learned weight for order-independent transparency. {EXPORTED_BY} {version}."),
         "Licence of this generated text: MIT OR Apache-2.0.".into(),
         language.spelling().about.into(),
         format!(
-            "Network: {} ({:?} hidden, {:?} last), {} parameters, {} multiply-adds. Recipe {}, seed {}, {} epochs.",
-            model.mlp.topology(),
-            model.mlp.hidden,
-            model.mlp.output,
-            model.mlp.parameters(),
-            multiply_adds(&model.mlp),
-            meta.recipe,
-            meta.seed,
-            meta.epochs
+            "Network: {topology} ({:?} hidden, {:?} last), {parameters} parameters, {adds} multiply-adds. Recipe {recipe}, seed {seed}, {epochs} epochs.",
+            mlp.hidden, mlp.output
         ),
         format!("Answers: {answer}."),
     ];
-    lines.extend(meta.inputs.iter().enumerate().map(|(i, input)| {
-        format!(
-            "Input {i}: {} ({}), {} .. {} in training.",
-            identifier(&input.name),
-            printable(&input.unit),
-            float(input.min),
-            float(input.max)
-        )
-    }));
+    for (i, input) in meta.inputs.iter().enumerate() {
+        let (name, unit) = (identifier(&input.name), printable(&input.unit));
+        let [min, max] = [input.min, input.max].map(float);
+        lines.push(format!(
+            "Input {i}: {name} ({unit}), {min} .. {max} in training."
+        ));
+    }
     lines
 }
 

@@ -94,24 +94,19 @@ impl SelfTest {
         let Some(pixel) = &self.pixel else {
             return lines;
         };
+        let [near, far] = [pixel.near, pixel.far].map(float);
+        let background = list(&pixel.background);
         lines.push(format!(
-            "Four fragments of a pixel, near {}, far {}, background {}:",
-            float(pixel.near),
-            float(pixel.far),
-            list(&pixel.background)
+            "Four fragments of a pixel, near {near}, far {far}, background {background}:"
         ));
-        lines.extend(pixel.fragments.iter().map(|f| {
-            format!(
-                "   z {}, alpha {}, rgb {}: zeta {}, weight {}",
-                float(f.z),
-                float(f.alpha),
-                list(&f.rgb),
-                float(f.zeta),
-                float(f.weight)
-            )
-        }));
-        let targets = pixel.targets.iter();
-        lines.extend(targets.map(|(name, values)| format!("   target {name}: {}", list(values))));
+        for f in &pixel.fragments {
+            let [z, alpha, zeta, weight] = [f.z, f.alpha, f.zeta, f.weight].map(float);
+            let surface = format!("z {z}, alpha {alpha}, rgb {}", list(&f.rgb));
+            lines.push(format!("   {surface}: zeta {zeta}, weight {weight}"));
+        }
+        for (name, values) in &pixel.targets {
+            lines.push(format!("   target {name}: {}", list(values)));
+        }
         lines.push(format!("   colour of the pixel: {}", list(&pixel.color)));
         lines
     }

@@ -48,12 +48,12 @@ pub struct Verification {
 
 impl fmt::Display for Verification {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (samples, worst) = (self.samples, self.worst_absolute);
+        let percent = 100.0 * self.worst_relative_to_tolerance;
+        write!(f, "{samples} inputs agree with the model, ")?;
         write!(
             f,
-            "{} inputs agree with the model, worst difference {:.1e} ({:.0} % of the tolerance)",
-            self.samples,
-            self.worst_absolute,
-            100.0 * self.worst_relative_to_tolerance
+            "worst difference {worst:.1e} ({percent:.0} % of the tolerance)"
         )
     }
 }
