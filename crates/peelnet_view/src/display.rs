@@ -80,7 +80,6 @@ impl Display {
         Ok(())
     }
 
-    /// The target in this size, known to egui.
     fn sized(
         &mut self,
         gpu: &Gpu,

@@ -139,12 +139,9 @@ impl App {
 
     fn fly(&mut self, ui: &Context) {
         let down = |key: Key| ui.input(|i| i.key_down(key) && i.modifiers == Modifiers::NONE);
-        let axis = |plus: Key, minus: Key| f32::from(down(plus)) - f32::from(down(minus));
-        let step = glam::Vec3::new(
-            axis(Key::D, Key::A),
-            axis(Key::E, Key::Q),
-            axis(Key::W, Key::S),
-        );
+        let axis = |(plus, minus): (Key, Key)| f32::from(down(plus)) - f32::from(down(minus));
+        let keys = [(Key::D, Key::A), (Key::E, Key::Q), (Key::W, Key::S)];
+        let step = glam::Vec3::from(keys.map(axis));
         if step != glam::Vec3::ZERO {
             let time = ui.input(|i| i.stable_dt).min(0.1);
             self.move_eye(|camera, all| eye::fly(camera, step * (SPEED * time * all.radius)));

@@ -70,7 +70,6 @@ fn steps(window: &mut Window) {
     window.run_steps(4);
 }
 
-/// Frames until something holds.
 fn until(window: &mut Window, what: &str, holds: impl Fn(&App) -> bool) {
     let begin = Instant::now();
     while !holds(window.state()) {

@@ -138,7 +138,6 @@ pub(super) fn objects(app: &mut App, ui: &mut Ui) {
     }
 }
 
-/// Three numbers in a row; whether one changed.
 fn vector(ui: &mut Ui, name: &str, x: &mut Vec3, speed: f32) -> bool {
     let label = ui.label(name);
     let mut changed = false;
