@@ -45,10 +45,7 @@ impl Output {
 
     /// Whether the value is a share of absorbance `r`, and the function answers with its transmittance `exp(−r s)`.
     pub const fn is_fraction(self) -> bool {
-        matches!(
-            self,
-            Self::AnchoredShare | Self::AnchoredShareSeparateEnds | Self::BoundedShare
-        )
+        !matches!(self, Self::Transmittance | Self::Color)
     }
 
     /// The transmittance that an answer stands for where it is a share ([`Output::is_fraction`]), given the raw inputs: `exp(−x² s)` with the first

@@ -88,10 +88,9 @@ impl Moments {
             return 1.0;
         }
         let means = self.sums.map(|sum| sum / total);
+        let [_, m1, m2, m3, m4, ..] = means;
         let (low, high) = match self.basis {
-            Basis::Power(4) => {
-                power::four_moment_bounds([means[1], means[2], means[3], means[4]], bias, zeta)
-            }
+            Basis::Power(4) => power::four_moment_bounds([m1, m2, m3, m4], bias, zeta),
             Basis::Power(6) => power::bounds::<4>(means, bias, zeta),
             Basis::Power(_) => power::bounds::<5>(means, bias, zeta),
             Basis::Trigonometric(count) => trigonometric::bounds(means, count, bias, zeta),

@@ -18,6 +18,10 @@ const OF_DEPTH: &str = "of the depth between the slab's ends";
 
 const OF_ABSORBANCE: &str = "of the absorbance between the slab's ends";
 
+const ROOT_OWN: &str = "root of the fragment's absorbance";
+
+const IN_SLABS: &str = "half of the depth between the slab's ends, in slabs";
+
 /// How much lies between a slab's ends, where the fragment lies, what is known of the share in front, how far apart the ends are, and how
 /// the absorbances compare.
 pub static NINE: [&Feature<Interior>; 9] = [
@@ -31,18 +35,8 @@ pub static NINE: [&Feature<Interior>; 9] = [
     &Feature::new("mean_fraction", OF_DEPTH, "between.mean", |b| b.mean),
     &Feature::new("share_low", OF_ABSORBANCE, "between.low", |b| b.bounds[0]),
     &Feature::new("share_high", OF_ABSORBANCE, "between.high", |b| b.bounds[1]),
-    &Feature::new(
-        "root_own",
-        "root of the fragment's absorbance",
-        "sqrt(between.own)",
-        |between| between.own.sqrt(),
-    ),
-    &Feature::new(
-        "half_extent",
-        "half of the depth between the slab's ends, in slabs",
-        "between.extent",
-        |between| between.extent,
-    ),
+    &Feature::new("root_own", ROOT_OWN, "sqrt(between.own)", |b| b.own.sqrt()),
+    &Feature::new("half_extent", IN_SLABS, "between.extent", |b| b.extent),
     &Feature::new(
         "of_own",
         "absorbance between the ends, of that and the fragment's",
