@@ -1,7 +1,6 @@
 //! A network and its metadata, and how it answers.
 
-use std::iter::Sum;
-use std::path::Path;
+use std::{iter::Sum, path::Path};
 
 use num_traits::{Float, cast};
 use peelnet_core::mlp::{Layer, Mlp};
@@ -29,12 +28,8 @@ impl Model {
     /// If the file cannot be read, is not a peelnet model, or [`Model::check`] refuses what it holds.
     pub fn load(path: impl AsRef<Path>) -> Result<Self, ModelError> {
         let path = path.as_ref();
-        let bytes =
-            peelnet_core::files::read(path, MAX_BYTES).map_err(|source| ModelError::Io {
-                path: path.to_owned(),
-                action: "read the model",
-                source,
-            })?;
+        let bytes = peelnet_core::files::read(path, MAX_BYTES);
+        let bytes = bytes.map_err(ModelError::io(path, "read the model"))?;
         Self::from_bytes(&bytes, path)
     }
 
@@ -71,11 +66,8 @@ impl Model {
     pub fn save(&self, path: impl AsRef<Path>) -> Result<(), ModelError> {
         let path = path.as_ref();
         let bytes = self.to_bytes().map_err(ModelError::invalid(path))?;
-        peelnet_core::files::write_whole(path, &bytes).map_err(|source| ModelError::Io {
-            path: path.to_owned(),
-            action: "write the model",
-            source,
-        })
+        peelnet_core::files::write_whole(path, &bytes)
+            .map_err(ModelError::io(path, "write the model"))
     }
 
     /// The bytes of the model's file: the same for the same model.
@@ -122,10 +114,10 @@ impl Model {
             )));
         }
         let (network, output) = (self.mlp.outputs(), self.meta.output);
-        let expected = output.count();
-        if network != expected {
+        if network != output.count() {
+            let count = output.count();
             return Err(Problem(format!(
-                "the network gives {network} outputs where {output} has {expected}"
+                "the network gives {network} outputs where {output} has {count}"
             )));
         }
         Ok(())
