@@ -1,6 +1,6 @@
 //! The text of every shader of peelnet, embedded.
 //!
-//! Each file is a WESL module: it imports others by path and switches parts with `@if(feature)`. The crate
+//! Each file is a WESL module: it imports others by path and switches parts with `@if(feature)`. The module
 //! `peelnet_render::shaders` links them to plain WGSL.
 //!
 //! ```

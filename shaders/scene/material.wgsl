@@ -1,6 +1,6 @@
 // What materials are made of. The vertex shader hands on what every fragment reads: a storage buffer read at every fragment costs more.
 
-// As peelnet_render's `MaterialData`.
+// As `MaterialData` in peelnet_render, geometry/uniforms.rs.
 struct Material {
     // Linear RGB and alpha.
     color: vec4f,

@@ -1,5 +1,5 @@
 // Radiance and opacity of a surface. Which of it exists is decided when a shader is linked, by what the scene's materials and
-// lights need. Twin of peelnet_core::shading.
+// lights need. The CPU reference is peelnet_core::shading.
 import package::scene::camera::camera;
 @if(emission || transmission) import package::helpers::guards::EMISSIVE_ALPHA;
 @if(color_map) import package::scene::maps::color_at;
@@ -10,7 +10,7 @@ import package::scene::camera::camera;
 import package::scene::material::{Material, materials};
 import package::scene::surface::Surface;
 
-// As peelnet_render's `LightData`.
+// As `LightData` in peelnet_render, geometry/uniforms.rs.
 @if(lit)
 struct Light {
     // A point; or, where `is_point` is 0, the direction that light comes from.

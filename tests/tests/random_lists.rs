@@ -283,7 +283,7 @@ proptest! {
         let z = if z.is_finite() { z } else { f32::MAX };
         for w in Weight::ALL {
             let value = w.eval(z, alpha, window);
-            prop_assert!(value.is_finite() && value >= 0.0, "{}: {} at {}", w.name(), value, z);
+            prop_assert!(value.is_finite() && value >= 0.0, "{w:?}: {value} at {z}");
         }
     }
 }

@@ -11,7 +11,10 @@ use peelnet_core::{
 };
 use peelnet_model::{
     Recipe,
-    inputs::{AnchoredInputs, DfaoitInputs, Feature, NmtInputs, SlabInputs, ThesisInputs, values},
+    inputs::{
+        ANCHORED, AnchoredInputs, DFAOIT, DfaoitInputs, Feature, NMT, NmtInputs, SlabInputs,
+        THESIS, ThesisInputs, values,
+    },
 };
 use peelnet_render::gpu::Gpu;
 use peelnet_tests::{HALF, gpu};
@@ -216,10 +219,10 @@ fn features_are_the_same_in_rust_and_wgsl() {
     let exact = SumPrecision::Exact;
     for recipe in Recipe::ALL {
         let inputs: &dyn Any = recipe.inputs;
-        if let Some(of) = inputs.downcast_ref::<ThesisInputs>() {
+        if inputs.is::<ThesisInputs>() {
             compare_features(
                 recipe,
-                of.features,
+                &THESIS,
                 pixels
                     .iter()
                     .flat_map(|pixel| pixel.iter().map(|f| deep::Row::new(f, pixel))),
@@ -232,10 +235,10 @@ fn features_are_the_same_in_rust_and_wgsl() {
                 },
                 "let linear_depth = x0; let statistics = vec2f(x1, x2);",
             );
-        } else if let Some(of) = inputs.downcast_ref::<NmtInputs>() {
+        } else if inputs.is::<NmtInputs>() {
             compare_features(
                 recipe,
-                of.features,
+                &NMT,
                 lists
                     .iter()
                     .flat_map(|list| nmt::FragmentMoments::all(list, &warp)),
@@ -246,10 +249,10 @@ fn features_are_the_same_in_rust_and_wgsl() {
                 "let zeta = x0; let extent = vec2f(x1, x2); let totals = vec4f(x3, x4, 0.0, 0.0);
         let moments = vec4f(x5, x6, x7, x8);",
             );
-        } else if let Some(of) = inputs.downcast_ref::<DfaoitInputs>() {
+        } else if inputs.is::<DfaoitInputs>() {
             compare_features(
         recipe,
-        of.features,
+        &DFAOIT,
         pixels
             .iter()
             .map(|pixel| dfaoit::Layers::from_fragments(pixel.iter().map(|f| (f.alpha, f.color)))),
@@ -260,10 +263,10 @@ fn features_are_the_same_in_rust_and_wgsl() {
         "let count = 3.0; let behind = count * vec4f(x0, x1, x2, x3); let all = vec4f(x4, x5, x6, 0.0);
         let front = vec4f(x7, x8, x9, 0.0);",
     );
-        } else if let Some(of) = inputs.downcast_ref::<AnchoredInputs>() {
+        } else if inputs.is::<AnchoredInputs>() {
             compare_features(
                 recipe,
-                of.features,
+                &ANCHORED,
                 lists
                     .iter()
                     .flat_map(|list| anchored::known_fragments(list, &warp, exact))

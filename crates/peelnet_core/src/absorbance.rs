@@ -21,9 +21,10 @@ pub fn absorbance(alpha: f32) -> f64 {
 /// cameras may have, is mapped linearly. The same for networks is `learned/zeta.wgsl`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DepthWarp {
-    near: f64,
+    pub near: f64,
     log_near: f64,
-    scale: f64,
+    /// `2 / (ln far − ln near)`; 0 for a range without extent.
+    pub scale: f64,
 }
 
 impl DepthWarp {
@@ -48,15 +49,6 @@ impl DepthWarp {
             log_near: near.ln(),
             scale: if extent > least { 2.0 / extent } else { 0.0 },
         }
-    }
-
-    pub const fn near(&self) -> f64 {
-        self.near
-    }
-
-    /// `2 / (ln far − ln near)`; 0 for a range without extent.
-    pub const fn scale(&self) -> f64 {
-        self.scale
     }
 
     pub fn apply(&self, depth: f64) -> f64 {

@@ -52,13 +52,11 @@ pub fn points(fragments: &[Fragment]) -> Vec<(f32, f32)> {
 /// ```
 pub fn transmittances(alphas: &[f32]) -> Vec<f32> {
     let mut t = 1.0;
-    let mut all = Vec::with_capacity(alphas.len() + 1);
-    all.push(t);
-    for &alpha in alphas {
+    let behind = alphas.iter().map(|alpha| {
         t *= 1.0 - alpha;
-        all.push(t);
-    }
-    all
+        t
+    });
+    std::iter::once(1.0).chain(behind).collect()
 }
 
 /// The four fragments that documentation, README and tests explain everything on: red, green and blue of α = ½

@@ -54,9 +54,7 @@ impl Mlp {
             return Err("the network has no layers".into());
         }
         for (i, layer) in layers.iter().enumerate() {
-            let Layer {
-                inputs, outputs, ..
-            } = *layer;
+            let (inputs, outputs) = (layer.inputs, layer.outputs);
             let [weights, biases] = [&layer.weights, &layer.bias].map(Vec::len);
             let before = if i > 0 { layers[i - 1].outputs } else { inputs };
             let wrong = if weights != inputs * outputs {
@@ -151,9 +149,8 @@ impl Mlp {
         let x = self.run(before, input.to_vec(), |f, b, row, x| {
             f.apply(f64::from(b) + products(row, x).sum::<f64>())
         });
-        let sizes = last.weights.chunks_exact(last.inputs).zip(&last.bias);
-        sizes
-            .map(|(row, &b)| f64::from(b).abs() + products(row, &x).map(f64::abs).sum::<f64>())
+        let rows = last.weights.chunks_exact(last.inputs).zip(&last.bias);
+        rows.map(|(row, &b)| f64::from(b).abs() + products(row, &x).map(f64::abs).sum::<f64>())
             .fold(0.0, f64::max)
     }
 }
@@ -182,15 +179,12 @@ mod tests {
 
     #[test]
     fn forward_is_the_written_out_sum() {
-        let net = Mlp::new(
-            vec![
-                layer(2, 2, &[1.0, -1.0, 0.5, 2.0], &[0.25, -4.0]),
-                layer(2, 1, &[2.0, 3.0], &[1.0]),
-            ],
-            Activation::Relu,
-            Activation::Identity,
-        )
-        .expect("shapes fit");
+        let layers = vec![
+            layer(2, 2, &[1.0, -1.0, 0.5, 2.0], &[0.25, -4.0]),
+            layer(2, 1, &[2.0, 3.0], &[1.0]),
+        ];
+        let net = Mlp::new(layers, Activation::Relu, Activation::Identity);
+        let net = net.expect("shapes fit");
         // hidden: 3 − 1 + 0.25 = 2.25; 1.5 + 2 − 4 = −0.5 → 0
         assert_eq!(net.forward(&[3.0f32, 1.0]), vec![5.5]);
         assert_eq!(net.forward(&[3.0f64, 1.0]), vec![5.5]);
@@ -200,23 +194,16 @@ mod tests {
 
     #[test]
     fn wrong_shapes_are_named() {
+        let good = || layer(2, 2, &[0.0; 4], &[0.0; 2]);
+        let wide = layer(3, 1, &[0.0; 3], &[0.0]);
+        let few_weights = layer(2, 2, &[0.0; 3], &[0.0; 2]);
+        let few_biases = layer(2, 2, &[0.0; 4], &[0.0]);
+        let misfit = "layer 1 takes 3 inputs but the layer before it gives 2";
         for (layers, want) in [
             (vec![], "the network has no layers"),
-            (
-                vec![
-                    layer(2, 2, &[0.0; 4], &[0.0; 2]),
-                    layer(3, 1, &[0.0; 3], &[0.0]),
-                ],
-                "layer 1 takes 3 inputs but the layer before it gives 2",
-            ),
-            (
-                vec![layer(2, 2, &[0.0; 3], &[0.0; 2])],
-                "layer 0: 3 weights for a 2×2 matrix",
-            ),
-            (
-                vec![layer(2, 2, &[0.0; 4], &[0.0])],
-                "layer 0: 1 biases for 2 outputs",
-            ),
+            (vec![good(), wide], misfit),
+            (vec![few_weights], "layer 0: 3 weights for a 2×2 matrix"),
+            (vec![few_biases], "layer 0: 1 biases for 2 outputs"),
         ] {
             let error = Mlp::new(layers, Activation::Relu, Activation::Identity).err();
             assert_eq!(error.as_deref(), Some(want));

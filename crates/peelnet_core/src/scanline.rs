@@ -43,12 +43,8 @@ pub fn rasterise(triangles: &[Triangle], width: usize, height: usize, offset: [f
     for triangle in triangles {
         let polygon = clip_depth(&triangle.clip);
         for i in 1..polygon.len().saturating_sub(1) {
-            walk(
-                &mut frame,
-                [polygon[0], polygon[i], polygon[i + 1]],
-                triangle.id,
-                offset,
-            );
+            let corners = [polygon[0], polygon[i], polygon[i + 1]];
+            walk(&mut frame, corners, triangle.id, offset);
         }
     }
     for pixel in &mut frame.pixels {
@@ -75,10 +71,8 @@ pub fn stable_pixels(
     let steps = [-radius, 0.0, radius];
     for offset in steps.into_iter().flat_map(|x| steps.map(|y| [x, y])) {
         let moved = rasterise(triangles, width, height, offset);
-        for (s, (a, b)) in stable
-            .iter_mut()
-            .zip(centre.pixels.iter().zip(&moved.pixels))
-        {
+        let pairs = centre.pixels.iter().zip(&moved.pixels);
+        for (s, (a, b)) in stable.iter_mut().zip(pairs) {
             *s &= ids(a) == ids(b);
         }
     }
@@ -106,7 +100,6 @@ fn clip_depth(vertices: &[[f64; 4]; 3]) -> Vec<[f64; 4]> {
     polygon
 }
 
-/// Walks one clipped triangle row by row.
 fn walk(frame: &mut Frame, vertices: [[f64; 4]; 3], id: u32, offset: [f64; 2]) {
     let (w, h) = (frame.width as f64, frame.height as f64);
     // Screen position, then the two quantities that are linear on the screen: 1/w and z/w.
@@ -118,8 +111,10 @@ fn walk(frame: &mut Frame, vertices: [[f64; 4]; 3], id: u32, offset: [f64; 2]) {
             c[2] / c[3],
         ]
     });
-    let area =
-        (p[1][0] - p[0][0]) * (p[2][1] - p[0][1]) - (p[2][0] - p[0][0]) * (p[1][1] - p[0][1]);
+    let from_first = |x: f64, y: f64| [x - p[0][0], y - p[0][1]];
+    let cross = |u: [f64; 2], v: [f64; 2]| u[0] * v[1] - v[0] * u[1];
+    let [u, v] = [p[1], p[2]].map(|p| from_first(p[0], p[1]));
+    let area = cross(u, v);
     if area == 0.0 || !area.is_finite() {
         return;
     }
@@ -141,16 +136,11 @@ fn walk(frame: &mut Frame, vertices: [[f64; 4]; 3], id: u32, offset: [f64; 2]) {
         if count != 2 {
             continue;
         }
-        let (left, right) = (
-            crossings[0].min(crossings[1]),
-            crossings[0].max(crossings[1]),
-        );
+        let [a, b, _] = crossings;
+        let (left, right) = (a.min(b), a.max(b));
         for x in first(left, offset[0])..first(right, offset[0]).min(frame.width) {
-            let sx = x as f64 + 0.5 + offset[0];
-            let l1 = ((sx - p[0][0]) * (p[2][1] - p[0][1]) - (p[2][0] - p[0][0]) * (sy - p[0][1]))
-                / area;
-            let l2 = ((p[1][0] - p[0][0]) * (sy - p[0][1]) - (sx - p[0][0]) * (p[1][1] - p[0][1]))
-                / area;
+            let at = from_first(x as f64 + 0.5 + offset[0], sy);
+            let (l1, l2) = (cross(at, v) / area, cross(u, at) / area);
             let linear = |k: usize| p[0][k] + l1 * (p[1][k] - p[0][k]) + l2 * (p[2][k] - p[0][k]);
             frame.pixels[y * frame.width + x].push(Hit {
                 depth: 1.0 / linear(2),
@@ -169,16 +159,7 @@ mod tests {
     fn quad(z: f64, x0: f64, x1: f64, id: u32) -> [Triangle; 2] {
         let v = |x: f64, y: f64| [x * z, y * z, 0.5 * z, z];
         let (a, b, c, d) = (v(x0, -1.0), v(x1, -1.0), v(x1, 1.0), v(x0, 1.0));
-        [
-            Triangle {
-                clip: [a, b, c],
-                id,
-            },
-            Triangle {
-                clip: [a, c, d],
-                id,
-            },
-        ]
+        [[a, b, c], [a, c, d]].map(|clip| Triangle { clip, id })
     }
 
     #[test]

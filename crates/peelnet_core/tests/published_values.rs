@@ -98,15 +98,12 @@ fn trigonometric_moments_have_their_closed_form() {
                 };
                 let own = (with(0.0) - with(1.0)) / 2.0;
                 let turn = angle(zeta) - angle(0.0);
-                let together: Complex64 =
-                    (0..=count).map(|k| Complex64::cis(k as f64 * turn)).sum();
+                let each = (0..=count).map(|k| Complex64::cis(k as f64 * turn));
                 let left = 1.0 - bias;
-                let share = left * together.norm_sqr() / (bias + left * size);
+                let share = left * each.sum::<Complex64>().norm_sqr() / (bias + left * size);
                 let want = bias / (size - share);
-                assert!(
-                    (own / want - 1.0).abs() < 1e-6,
-                    "{count} {zeta}: {own} for {want}"
-                );
+                let is_near = (own / want - 1.0).abs() < 1e-6;
+                assert!(is_near, "{count} {zeta}: {own} for {want}");
             }
         }
     }

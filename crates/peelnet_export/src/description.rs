@@ -2,7 +2,7 @@
 
 use crate::language::Language;
 use peelnet_model::Recipe;
-use peelnet_model::inputs::{Blend, Pass, Surroundings, Target};
+use peelnet_model::inputs::{Blend, Pass, Target};
 use serde::Serialize;
 
 /// What a renderer must do around an exported text.
@@ -30,12 +30,8 @@ const RULES: &[&str] = &[
 impl Description {
     /// Of the networks of a recipe.
     pub fn new(recipe: Recipe) -> Self {
-        let Surroundings {
-            before,
-            passes,
-            resolve,
-            ..
-        } = *recipe.inputs.surroundings();
+        let surroundings = recipe.inputs.surroundings();
+        let (passes, resolve) = (surroundings.passes, surroundings.resolve);
         let targets = passes.iter().flat_map(|pass| pass.targets);
         let mut names: Vec<&str> = targets.map(|target| target.name).collect();
         names.extend(passes.iter().flat_map(|pass| pass.reads));
@@ -46,7 +42,7 @@ impl Description {
             }
         }
         Self {
-            before,
+            before: surroundings.before,
             passes,
             resolve,
             resolve_reads,
@@ -67,16 +63,12 @@ impl Description {
             lines.push(format!(
                 "{k}. Pass \"{name}\": draw all transparent surfaces, in any order. {compute}"
             ));
-            lines.extend(
-                pass.targets
-                    .iter()
-                    .map(|target| target_line(target, language)),
-            );
+            let targets = pass.targets.iter();
+            lines.extend(targets.map(|target| target_line(target, language)));
         }
+        let (last, call) = (self.passes.len() + 1, language.expression(self.resolve));
         lines.push(format!(
-            "{}. Resolve: {} is the colour of the pixel, and its coverage in alpha.",
-            self.passes.len() + 1,
-            language.expression(self.resolve)
+            "{last}. Resolve: {call} is the colour of the pixel, and its coverage in alpha."
         ));
         lines.extend(self.rules.iter().map(|rule| format!("- {rule}")));
         lines
@@ -99,11 +91,7 @@ fn target_line(target: &Target, language: Language) -> String {
     } else {
         format!("{color} for rgb, {alpha} for alpha")
     };
-    format!(
-        "   {}: {}, cleared to {}, blending {blending}, from {}",
-        target.name,
-        target.format,
-        clear.join(", "),
-        language.expression(target.write)
-    )
+    let (name, format, clear) = (target.name, target.format, clear.join(", "));
+    let write = language.expression(target.write);
+    format!("   {name}: {format}, cleared to {clear}, blending {blending}, from {write}")
 }

@@ -11,7 +11,7 @@ use crate::{
 };
 use peelnet_core::files::{printable, printable_lines};
 use peelnet_core::tolerance::EXPORT_F16;
-use peelnet_model::{Model, Output};
+use peelnet_model::{DatasetRef, Model, Output};
 use std::borrow::Cow;
 
 /// Says in a text who wrote it.
@@ -25,10 +25,9 @@ fn names<'a>(all: impl ExactSizeIterator<Item = Cow<'a, str>>) -> String {
     let more = all.len().saturating_sub(MAX_NAMES);
     let shown: Vec<Cow<'_, str>> = all.take(MAX_NAMES).collect();
     let shown = shown.join(", ");
-    if more == 0 {
-        shown
-    } else {
-        format!("{shown} and {more} more")
+    match more {
+        0 => shown,
+        _ => format!("{shown} and {more} more"),
     }
 }
 
@@ -61,11 +60,10 @@ fn about(model: &Model, language: Language) -> Vec<String> {
     let meta = &model.meta;
     let (low, high) = meta.output.range();
     let answer = match meta.output {
-        Output::Transmittance => format!(
-            "transmittance in front, kept in {} .. {}",
-            float(low),
-            float(high)
-        ),
+        Output::Transmittance => {
+            let [low, high] = [low, high].map(float);
+            format!("transmittance in front, kept in {low} .. {high}")
+        }
         Output::AnchoredShare | Output::AnchoredShareSeparateEnds => {
             "transmittance of the rest, exp(-rest * share) with rest = root_absorbance^2 and share in 0 .. 1"
                 .into()
@@ -77,59 +75,48 @@ fn about(model: &Model, language: Language) -> Vec<String> {
         }
         Output::Color => "linear RGB of all transparent fragments over black, kept in 0 .. 1".into(),
     };
+    let (mlp, version) = (&model.mlp, env!("CARGO_PKG_VERSION"));
+    let (topology, parameters, adds) = (mlp.topology(), mlp.parameters(), multiply_adds(mlp));
+    let (recipe, seed, epochs) = (meta.recipe, meta.seed, meta.epochs);
     let mut lines = vec![
-        format!(
-            "A learned weight for order-independent transparency. {EXPORTED_BY} {}.",
-            env!("CARGO_PKG_VERSION")
-        ),
+        format!("A learned weight for order-independent transparency. {EXPORTED_BY} {version}."),
         "Licence of this generated text: MIT OR Apache-2.0.".into(),
         language.spelling().about.into(),
         format!(
-            "Network: {} ({:?} hidden, {:?} last), {} parameters, {} multiply-adds. Recipe {}, seed {}, {} epochs.",
-            model.mlp.topology(),
-            model.mlp.hidden,
-            model.mlp.output,
-            model.mlp.parameters(),
-            multiply_adds(&model.mlp),
-            meta.recipe,
-            meta.seed,
-            meta.epochs
+            "Network: {topology} ({:?} hidden, {:?} last), {parameters} parameters, {adds} multiply-adds. Recipe {recipe}, seed {seed}, {epochs} epochs.",
+            mlp.hidden, mlp.output
         ),
         format!("Answers: {answer}."),
     ];
-    lines.extend(meta.inputs.iter().enumerate().map(|(i, input)| {
-        format!(
-            "Input {i}: {} ({}), {} .. {} in training.",
-            identifier(&input.name),
-            printable(&input.unit),
-            float(input.min),
-            float(input.max)
-        )
-    }));
+    for (i, input) in meta.inputs.iter().enumerate() {
+        let (name, unit) = (identifier(&input.name), printable(&input.unit));
+        let [min, max] = [input.min, input.max].map(float);
+        lines.push(format!(
+            "Input {i}: {name} ({unit}), {min} .. {max} in training."
+        ));
+    }
     lines
 }
 
 /// The data that it was trained on, and its errors.
 fn provenance(model: &Model) -> [String; 3] {
     let meta = &model.meta;
-    let data = meta.dataset.as_ref().map_or_else(
-        || "Trained on: unknown.".to_owned(),
-        |d| {
-            format!(
-                "Trained on {} rows of {} (dataset {}).",
-                d.rows,
-                names(d.scenes.iter().map(|scene| printable(scene))),
-                printable(&d.hash)
-            )
-        },
-    );
+    let mut data = "Trained on: unknown.".to_owned();
+    if let Some(DatasetRef {
+        rows, hash, scenes, ..
+    }) = &meta.dataset
+    {
+        let (hash, scenes) = (printable(hash), scenes.iter().map(|scene| printable(scene)));
+        let scenes = names(scenes);
+        data = format!("Trained on {rows} rows of {scenes} (dataset {hash}).");
+    }
     let losses = [
         ("training", meta.losses.train),
         ("validation", meta.losses.validation),
         ("test", meta.losses.test),
     ];
-    let losses = losses.iter();
-    let losses = losses.filter_map(|(name, loss)| Some(format!("{name} {:.6}", (*loss)?)));
+    let losses = losses.into_iter();
+    let losses = losses.filter_map(|(name, loss)| Some(format!("{name} {:.6}", loss?)));
     let losses = match losses.collect::<Vec<_>>() {
         none if none.is_empty() => "unknown".to_owned(),
         losses => losses.join(", "),

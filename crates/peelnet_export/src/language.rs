@@ -7,7 +7,7 @@ use naga::{
     proc::BoundsCheckPolicies,
 };
 use peelnet_model::inputs::{Value, ValueKind};
-use std::{fmt, path::Path};
+use std::{error::Error, fmt, path::Path};
 
 /// A shading language that a model is exported to.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -140,28 +140,22 @@ impl Language {
         let entry = if is_glsl { ENTRY } else { "" };
         let (module, info) = parsed(&format!("{wgsl}{entry}"))?;
         let mut text = String::new();
-        let written: Result<(), Box<dyn fmt::Display>> = match self {
-            Self::Hlsl => {
+        let mut write = || -> Result<(), Box<dyn Error>> {
+            if self == Self::Hlsl {
                 let options = hlsl::Options {
                     // The first with 16-bit floats; the text needs no more than 6.0 without them.
                     shader_model: hlsl::ShaderModel::V6_2,
                     ..Default::default()
                 };
                 hlsl::Writer::new(&mut text, &options, &Default::default())
-                    .write(&module, &info, None)
-                    .map(drop)
-                    .map_err(|e| Box::new(e) as _)
-            }
-            Self::Msl => {
+                    .write(&module, &info, None)?;
+            } else if self == Self::Msl {
                 let options = msl::Options {
                     lang_version: (2, 4),
                     ..Default::default()
                 };
-                msl::write_string(&module, &info, &options, &Default::default())
-                    .map(|(msl, _)| text = msl)
-                    .map_err(|e| Box::new(e) as _)
-            }
-            _ => {
+                text = msl::write_string(&module, &info, &options, &Default::default())?.0;
+            } else {
                 let options = glsl::Options {
                     version: match self {
                         Self::GlslEs => glsl::Version::new_gles(300),
@@ -176,13 +170,12 @@ impl Language {
                     multiview: None,
                 };
                 let policies = BoundsCheckPolicies::default();
-                glsl::Writer::new(&mut text, &module, &info, &options, &pipeline, policies)
-                    .and_then(|mut writer| writer.write())
-                    .map(drop)
-                    .map_err(|e| Box::new(e) as _)
+                glsl::Writer::new(&mut text, &module, &info, &options, &pipeline, policies)?
+                    .write()?;
             }
+            Ok(())
         };
-        written.map_err(|e| {
+        write().map_err(|e| {
             ExportError::Refused(format!(
                 "the text cannot be translated to {self}: {e}; nothing was written"
             ))
@@ -211,9 +204,6 @@ impl fmt::Display for Language {
 /// A text, valid, whether it computes in 16 or in 32 bits.
 pub(crate) fn parsed(wgsl: &str) -> Result<(naga::Module, naga::valid::ModuleInfo), ExportError> {
     let halves = naga::valid::Capabilities::SHADER_FLOAT16;
-    Ok(peelnet_render::shaders::validate(
-        "exported network",
-        wgsl,
-        halves,
-    )?)
+    let validated = peelnet_render::shaders::validate("exported network", wgsl, halves);
+    Ok(validated?)
 }

@@ -42,10 +42,8 @@ mod tests {
     fn literals_read_back() {
         for x in [0.0, -0.0, 1.0, -1.5, 1e-45, f32::MAX, 0.1, 1e18, 6.1e-5] {
             let text = float(x);
-            assert_eq!(
-                text.parse::<f32>().expect("a number").to_bits(),
-                f32::to_bits(x)
-            );
+            let read: f32 = text.parse().expect("a number");
+            assert_eq!(read.to_bits(), f32::to_bits(x));
             // WGSL reads a literal without point or exponent as an integer.
             assert!(text.contains(['.', 'e']), "{text}");
         }

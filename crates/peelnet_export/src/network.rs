@@ -152,11 +152,8 @@ fn network(model: &Model, limited: bool, precision: Precision) -> (String, Strin
         let (hidden, output) = (model.mlp.hidden, model.mlp.output);
         let activation = if l == last { output } else { hidden };
         let name = format!("layer_{}", letters(l));
-        let mut text = if l == 0 && !limited {
-            layer_text(&for_raw_inputs(layer, inputs), &before, &name, activation)
-        } else {
-            layer_text(layer, &before, &name, activation)
-        };
+        let raw = (l == 0 && !limited).then(|| for_raw_inputs(layer, inputs));
+        let mut text = layer_text(raw.as_ref().unwrap_or(layer), &before, &name, activation);
         if halves && l == last {
             // Back to 32 bits.
             for part in (0..layer.inputs.div_ceil(4)).map(|c| part(&before, c)) {
@@ -175,11 +172,8 @@ fn network(model: &Model, limited: bool, precision: Precision) -> (String, Strin
 /// A first layer that normalises its inputs itself: `W s (x − o) + c = (W s) x + (c − W s o)`.
 fn for_raw_inputs(layer: &Layer, inputs: &[Input]) -> Layer {
     let mut raw = layer.clone();
-    for (row, bias) in raw
-        .weights
-        .chunks_exact_mut(layer.inputs)
-        .zip(&mut raw.bias)
-    {
+    let rows = raw.weights.chunks_exact_mut(layer.inputs);
+    for (row, bias) in rows.zip(&mut raw.bias) {
         let mut sum = f64::from(*bias);
         for (w, i) in row.iter_mut().zip(inputs) {
             let scaled = f64::from(*w) * f64::from(i.scale);

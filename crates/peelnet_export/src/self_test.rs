@@ -88,31 +88,25 @@ impl SelfTest {
     /// As lines of a comment; `function` is the network's.
     pub(crate) fn lines(&self, function: &str) -> Vec<String> {
         let mut lines = vec!["Self-tests, to some roundings of 32 bits; weights and colours also to those of 16-bit targets.".to_owned()];
-        let points = self.network.iter();
-        lines.extend(
-            points.map(|p| format!("{function}({}) = {}", list(&p.inputs), list(&p.answers))),
-        );
+        for Point { inputs, answers } in &self.network {
+            lines.push(format!("{function}({}) = {}", list(inputs), list(answers)));
+        }
         let Some(pixel) = &self.pixel else {
             return lines;
         };
+        let [near, far] = [pixel.near, pixel.far].map(float);
+        let background = list(&pixel.background);
         lines.push(format!(
-            "Four fragments of a pixel, near {}, far {}, background {}:",
-            float(pixel.near),
-            float(pixel.far),
-            list(&pixel.background)
+            "Four fragments of a pixel, near {near}, far {far}, background {background}:"
         ));
-        lines.extend(pixel.fragments.iter().map(|f| {
-            format!(
-                "   z {}, alpha {}, rgb {}: zeta {}, weight {}",
-                float(f.z),
-                float(f.alpha),
-                list(&f.rgb),
-                float(f.zeta),
-                float(f.weight)
-            )
-        }));
-        let targets = pixel.targets.iter();
-        lines.extend(targets.map(|(name, values)| format!("   target {name}: {}", list(values))));
+        for f in &pixel.fragments {
+            let [z, alpha, zeta, weight] = [f.z, f.alpha, f.zeta, f.weight].map(float);
+            let surface = format!("z {z}, alpha {alpha}, rgb {}", list(&f.rgb));
+            lines.push(format!("   {surface}: zeta {zeta}, weight {weight}"));
+        }
+        for (name, values) in &pixel.targets {
+            lines.push(format!("   target {name}: {}", list(values)));
+        }
         lines.push(format!("   colour of the pixel: {}", list(&pixel.color)));
         lines
     }

@@ -51,19 +51,15 @@ pub fn wgsl(model: &Model) -> Result<String, ExportError> {
 /// The text in WGSL without its header.
 pub(crate) fn code(model: &Model, precision: Precision) -> Result<String, ExportError> {
     model.check()?;
-    let mut text = String::new();
+    let mut parts: Vec<String> = Vec::new();
     if precision == Precision::F16 {
-        text.push_str(ENABLE_HALVES);
-        text.push('\n');
+        parts.push(ENABLE_HALVES.into());
     }
     for module in modules(model.meta.recipe) {
-        text.push_str(peelnet_render::shaders::source(module)?);
-        text.push('\n');
+        parts.push(peelnet_render::shaders::source(module)?.into());
     }
-    text.push_str(&call(model));
-    text.push('\n');
-    text.push_str(&weight_function(model, precision));
-    Ok(text)
+    parts.extend([call(model), weight_function(model, precision)]);
+    Ok(parts.join("\n"))
 }
 
 /// The shader modules that surround a network.

@@ -48,12 +48,12 @@ pub struct Verification {
 
 impl fmt::Display for Verification {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (samples, worst) = (self.samples, self.worst_absolute);
+        let percent = 100.0 * self.worst_relative_to_tolerance;
+        write!(f, "{samples} inputs agree with the model, ")?;
         write!(
             f,
-            "{} inputs agree with the model, worst difference {:.1e} ({:.0} % of the tolerance)",
-            self.samples,
-            self.worst_absolute,
-            100.0 * self.worst_relative_to_tolerance
+            "worst difference {worst:.1e} ({percent:.0} % of the tolerance)"
         )
     }
 }
@@ -61,24 +61,14 @@ impl fmt::Display for Verification {
 /// The difference that is allowed of an answer: [`EXPORT_F32`] of [`Mlp::magnitude`](peelnet_core::mlp::Mlp::magnitude). A weight `exp(−r s)` may differ as
 /// much as its share may, and by [`EXPORT_F32`] more for the rounding of `r` and of the exponential.
 fn tolerance(model: &Model, raw: &[f64]) -> f64 {
-    let normalised: Vec<f64> = model
-        .meta
-        .inputs
-        .iter()
-        .zip(raw)
-        .map(|(i, &x)| i.normalise(x))
-        .collect();
+    let (inputs, output) = (model.meta.inputs.iter().zip(raw), model.meta.output);
+    let normalised: Vec<f64> = inputs.map(|(i, &x)| i.normalise(x)).collect();
     let sum = EXPORT_F32 * model.mlp.magnitude(&normalised);
-    if !model.meta.output.is_fraction() {
+    if !output.is_fraction() {
         return sum;
     }
     let fraction = model.forward_raw(raw)[0];
-    let weight = |fraction: f64| {
-        model
-            .meta
-            .output
-            .transmittance(raw, fraction.clamp(0.0, 1.0))
-    };
+    let weight = |fraction: f64| output.transmittance(raw, fraction.clamp(0.0, 1.0));
     // A sigmoid's slope is at most a quarter.
     let spread = weight(fraction - 0.25 * sum) - weight(fraction + 0.25 * sum);
     EXPORT_F32 + spread.abs()
@@ -140,9 +130,8 @@ pub fn verify(gpu: &Gpu, model: &Model, wgsl: &str) -> Result<Verification, Expo
             }
             result.worst_absolute = result.worst_absolute.max(difference);
             if tolerance > 0.0 {
-                result.worst_relative_to_tolerance = result
-                    .worst_relative_to_tolerance
-                    .max(difference / tolerance);
+                let worst = &mut result.worst_relative_to_tolerance;
+                *worst = worst.max(difference / tolerance);
             }
         }
     }
@@ -204,21 +193,19 @@ pub fn evaluate(
     samples: &[Vec<f32>],
 ) -> Result<Vec<f32>, ExportError> {
     let count = model.meta.inputs.len();
-    let arguments: Vec<_> = (0..count)
-        .map(|k| format!("inputs[id.x * {count}u + {k}u]"))
-        .collect();
+    let arguments = (0..count).map(|k| format!("inputs[id.x * {count}u + {k}u]"));
+    let arguments = arguments.collect::<Vec<_>>().join(", ");
     let function = function_name(model.meta.output);
     let outputs = model.meta.output.count();
     // One component after the other: an array of vec3f would have gaps.
-    let components: String = (0..outputs)
-        .map(|k| {
-            let component = if outputs == 1 {
-                ""
-            } else {
-                [".x", ".y", ".z"][k]
-            };
-            format!("outputs[id.x * {outputs}u + {k}u] = answer{component};")
-        })
+    let components = if outputs == 1 {
+        &[""][..]
+    } else {
+        &[".x", ".y", ".z"]
+    };
+    let components = components.iter().enumerate();
+    let components: String = components
+        .map(|(k, of)| format!("outputs[id.x * {outputs}u + {k}u] = answer{of};"))
         .collect();
     let driver = format!(
         "{wgsl}
@@ -227,11 +214,10 @@ pub fn evaluate(
         @compute @workgroup_size(64)
         fn main(@builtin(global_invocation_id) id: vec3u) {{
             if id.x < arrayLength(&outputs) / {outputs}u {{
-                let answer = {function}({});
+                let answer = {function}({arguments});
                 {components}
             }}
-        }}",
-        arguments.join(", ")
+        }}"
     );
     parsed(&driver)?;
     let flat: Vec<f32> = samples.iter().flatten().copied().collect();
@@ -242,14 +228,11 @@ pub fn evaluate(
 /// The description beside an exported text: its name with `json` instead of the last extension, `.es.glsl` being one. `None` of a text that
 /// goes to stdout.
 pub fn description_path(text: &Path) -> Option<PathBuf> {
-    let name = text.to_string_lossy();
-    let stem = name
-        .strip_suffix(".es.glsl")
-        .filter(|_| text.to_str().is_some());
-    let path = stem.map_or_else(
-        || text.with_extension("json"),
-        |s| format!("{s}.json").into(),
-    );
+    let stem = text.to_str().and_then(|name| name.strip_suffix(".es.glsl"));
+    let path = match stem {
+        Some(stem) => format!("{stem}.json").into(),
+        None => text.with_extension("json"),
+    };
     (text != Path::new(STDOUT)).then_some(path)
 }
 
@@ -345,10 +328,8 @@ mod tests {
             let text = wgsl(&model).expect("exports");
             assert_eq!(text, wgsl(&model).expect("exports"));
             let v = verify(&gpu, &model, &text).expect("agrees");
-            assert!(
-                v.samples > RANDOM && v.worst_relative_to_tolerance > 0.0,
-                "{v}"
-            );
+            let differs = v.worst_relative_to_tolerance > 0.0;
+            assert!(v.samples > RANDOM && differs, "{v}");
         }
     }
 

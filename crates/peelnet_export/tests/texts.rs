@@ -115,20 +115,19 @@ fn texts_are_portable() {
             for (_, expression) in function.expressions.iter() {
                 if let Expression::Select { condition, .. } = expression {
                     let condition = info[handle][*condition].ty.inner_with(&module.types);
+                    let is_one = matches!(condition, TypeInner::Scalar(_));
+                    let name = &function.name;
                     assert!(
-                        matches!(condition, TypeInner::Scalar(_)),
-                        "{recipe}: a select of {:?} has a vector of conditions",
-                        function.name
+                        is_one,
+                        "{recipe}: a select of {name:?} has a vector of conditions"
                     );
                 }
             }
         }
         assert!(names.len() > 20, "{recipe}: {names:?}");
         for name in names {
-            assert!(
-                !name.ends_with(|c: char| c.is_ascii_digit()),
-                "{recipe}: {name}"
-            );
+            let ends_in_digit = name.ends_with(|c: char| c.is_ascii_digit());
+            assert!(!ends_in_digit, "{recipe}: {name}");
         }
     }
 }

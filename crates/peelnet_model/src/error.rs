@@ -25,6 +25,14 @@ pub enum ModelError {
 }
 
 impl ModelError {
+    pub(crate) fn io(path: &Path, action: &'static str) -> impl FnOnce(io::Error) -> Self {
+        move |source| Self::Io {
+            path: path.to_owned(),
+            action,
+            source,
+        }
+    }
+
     pub(crate) fn invalid(path: &Path) -> impl FnOnce(Problem) -> Self {
         |problem| Self::Invalid {
             path: path.to_owned(),

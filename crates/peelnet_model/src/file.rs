@@ -1,7 +1,6 @@
 //! The model as safetensors bytes, and files of them.
 
-use std::collections::HashMap;
-use std::fmt;
+use std::{collections::HashMap, fmt};
 
 use peelnet_core::files::Kind;
 use peelnet_core::mlp::{Activation, Layer, Mlp};
@@ -121,44 +120,38 @@ fn read_metadata(json: &str) -> Result<(Metadata, Activations), Problem> {
 
 fn read_layers(tensors: &SafeTensors<'_>) -> Result<Vec<Layer>, Problem> {
     let names = tensors.names();
-    let layers = names
-        .iter()
-        .filter_map(|n| n.strip_prefix("layers.")?.split_once('.')?.0.parse().ok())
-        .map(|i: usize| i.saturating_add(1))
-        .max()
-        .unwrap_or(0)
-        // More layers than tensors means that some are missing; no need to look for all of them.
-        .min(names.len() + 1);
-    if let Some(unknown) = names
-        .iter()
-        .filter(|n| !(0..layers).any(|i| **n == weight(i) || **n == bias(i)))
-        .min()
-    {
+    let number = |name: &&str| -> Option<usize> {
+        let (number, _) = name.strip_prefix("layers.")?.split_once('.')?;
+        number.parse().ok()
+    };
+    let last = names.iter().filter_map(number).max();
+    // More layers than tensors means that some are missing; no need to look for all of them.
+    let layers = last.map_or(0, |last| last.min(names.len()) + 1);
+    let is_unknown = |name: &&&str| !(0..layers).any(|i| **name == weight(i) || **name == bias(i));
+    if let Some(unknown) = names.iter().filter(is_unknown).min() {
         return Err(misnamed(unknown, "belongs to no layer"));
     }
     if layers == 0 {
         return Err(misnamed(&weight(0), "is missing"));
     }
-    (0..layers)
-        .map(|i| {
-            let (shape, weights) = read_tensor(tensors, &weight(i), 2)?;
-            let (bias_shape, bias_values) = read_tensor(tensors, &bias(i), 1)?;
-            if bias_shape[0] != shape[0] {
-                return Err(Problem(format!(
-                    "tensor {:?} is F32 {bias_shape:?}, expected F32 [{}], one for each row of {}",
-                    bias(i),
-                    shape[0],
-                    weight(i)
-                )));
-            }
-            Ok(Layer {
-                outputs: shape[0],
-                inputs: shape[1],
-                weights,
-                bias: bias_values,
-            })
+    let read = |i| {
+        let (bias_name, weight_name) = (bias(i), weight(i));
+        let (shape, weights) = read_tensor(tensors, &weight_name, 2)?;
+        let (bias_shape, bias) = read_tensor(tensors, &bias_name, 1)?;
+        let (outputs, inputs) = (shape[0], shape[1]);
+        if bias_shape[0] != outputs {
+            return Err(Problem(format!(
+                "tensor {bias_name:?} is F32 {bias_shape:?}, expected F32 [{outputs}], one for each row of {weight_name}"
+            )));
+        }
+        Ok(Layer {
+            outputs,
+            inputs,
+            weights,
+            bias,
         })
-        .collect()
+    };
+    (0..layers).map(read).collect()
 }
 
 /// Shape and values of a tensor with so many dimensions, none of which is 0.

@@ -1,7 +1,6 @@
 //! What a model knows about itself.
 
-use std::collections::BTreeMap;
-use std::fmt;
+use std::{collections::BTreeMap, fmt};
 
 use num_traits::{Float, clamp};
 use peelnet_core::guards::{INPUT_LIMIT, RAW_LIMIT};
@@ -130,11 +129,9 @@ impl Metadata {
             ] {
                 finite(field(name), value.into())?;
             }
-            let Input {
-                scale, min, max, ..
-            } = input;
-            require(*scale != 0.0, &field("scale"), scale, "other than 0")?;
-            require(min <= max, &field("min"), min, "at most max")?;
+            let (scale, min) = (input.scale, input.min);
+            require(scale != 0.0, &field("scale"), &scale, "other than 0")?;
+            require(min <= input.max, &field("min"), &min, "at most max")?;
         }
         for (name, loss) in [
             ("train", self.losses.train),

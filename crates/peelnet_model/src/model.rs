@@ -1,7 +1,7 @@
 //! A network and its metadata, and how it answers.
 
-use std::iter::Sum;
-use std::path::Path;
+use std::io::ErrorKind;
+use std::{iter::Sum, path::Path};
 
 use num_traits::{Float, cast};
 use peelnet_core::mlp::{Layer, Mlp};
@@ -30,20 +30,14 @@ impl Model {
     pub fn load(path: impl AsRef<Path>) -> Result<Self, ModelError> {
         let path = path.as_ref();
         let bytes = peelnet_core::files::read(path, MAX_BYTES);
-        let bytes = bytes.map_err(|source| match source.kind() {
-            std::io::ErrorKind::IsADirectory => ModelError::Invalid {
-                path: path.to_owned(),
-                problem: Problem(
-                    "is a folder, and a network is a file; name one that `peelnet train` wrote"
-                        .into(),
-                ),
-            },
-            _ => ModelError::Io {
-                path: path.to_owned(),
-                action: "read the model",
-                source,
-            },
-        })?;
+        let bytes = match bytes {
+            Err(e) if e.kind() == ErrorKind::IsADirectory => {
+                let why =
+                    "is a folder, and a network is a file; name one that `peelnet train` wrote";
+                return Err(ModelError::invalid(path)(Problem(why.to_owned())));
+            }
+            bytes => bytes.map_err(ModelError::io(path, "read the model"))?,
+        };
         Self::from_bytes(&bytes, path)
     }
 
@@ -80,11 +74,8 @@ impl Model {
     pub fn save(&self, path: impl AsRef<Path>) -> Result<(), ModelError> {
         let path = path.as_ref();
         let bytes = self.to_bytes().map_err(ModelError::invalid(path))?;
-        peelnet_core::files::write_whole(path, &bytes).map_err(|source| ModelError::Io {
-            path: path.to_owned(),
-            action: "write the model",
-            source,
-        })
+        peelnet_core::files::write_whole(path, &bytes)
+            .map_err(ModelError::io(path, "write the model"))
     }
 
     /// The bytes of the model's file: the same for the same model.
@@ -131,10 +122,10 @@ impl Model {
             )));
         }
         let (network, output) = (self.mlp.outputs(), self.meta.output);
-        let expected = output.count();
-        if network != expected {
+        if network != output.count() {
+            let count = output.count();
             return Err(Problem(format!(
-                "the network gives {network} outputs where {output} has {expected}"
+                "the network gives {network} outputs where {output} has {count}"
             )));
         }
         Ok(())

@@ -45,10 +45,7 @@ impl Output {
 
     /// Whether the value is a share of absorbance `r`, and the function answers with its transmittance `exp(−r s)`.
     pub const fn is_fraction(self) -> bool {
-        matches!(
-            self,
-            Self::AnchoredShare | Self::AnchoredShareSeparateEnds | Self::BoundedShare
-        )
+        !matches!(self, Self::Transmittance | Self::Color)
     }
 
     /// The transmittance that an answer stands for where it is a share ([`Output::is_fraction`]), given the raw inputs: `exp(−x² s)` with the first
@@ -57,16 +54,13 @@ impl Output {
     /// # Panics
     /// With fewer inputs than such networks have.
     pub fn transmittance(self, raw_inputs: &[f64], answer: f64) -> f64 {
-        let absorbance = raw_inputs[0]
-            .clamp(0.0, ROOT_ABSORBANCE_LIMIT.into())
-            .powi(2);
-        let share = if self == Self::BoundedShare {
+        let root = raw_inputs[0].clamp(0.0, ROOT_ABSORBANCE_LIMIT.into());
+        let mut share = answer;
+        if self == Self::BoundedShare {
             let [low, high] = BOUNDS.map(|k| raw_inputs[k].clamp(0.0, 1.0));
-            low + (high - low) * answer
-        } else {
-            answer
-        };
-        (-absorbance * share).exp()
+            share = low + (high - low) * answer;
+        }
+        (-root.powi(2) * share).exp()
     }
 
     /// Keeps one value of the network in range; NaN becomes the smallest value.

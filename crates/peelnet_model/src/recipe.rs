@@ -9,8 +9,7 @@ use peelnet_core::{methods::slabs::Design, mlp::Activation, statistics::SumPreci
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
 
 use crate::inputs::{
-    ANCHORED, AnchoredInputs, DFAOIT, DfaoitInputs, FIVE, NINE, NMT, NetworkInputs, NmtInputs,
-    SlabInputs, THESIS, ThesisInputs,
+    AnchoredInputs, DfaoitInputs, FIVE, NINE, NetworkInputs, NmtInputs, SlabInputs, ThesisInputs,
 };
 use crate::output::Output;
 
@@ -146,7 +145,6 @@ const FRACTIONS: Declaration = Declaration {
     name: "",
     method: "",
     inputs: &AnchoredInputs {
-        features: &ANCHORED,
         separate_extremes: false,
     },
     output: Output::BoundedShare,
@@ -171,7 +169,7 @@ impl Recipe {
     pub const THESIS: Self = Self(&Declaration {
         name: "thesis",
         method: "deep-thesis",
-        inputs: &ThesisInputs { features: &THESIS },
+        inputs: &ThesisInputs,
         output: Output::Transmittance,
         sums: SumPrecision::Exact,
         network: relu(&[10, 8], Activation::Identity),
@@ -237,7 +235,6 @@ impl Recipe {
         name: "anchored-medium",
         method: "deep-anchored-medium",
         inputs: &AnchoredInputs {
-            features: &ANCHORED,
             separate_extremes: true,
         },
         output: Output::AnchoredShareSeparateEnds,
@@ -248,7 +245,7 @@ impl Recipe {
     pub const NMT: Self = Self(&Declaration {
         name: "nmt",
         method: "nmt",
-        inputs: &NmtInputs { features: &NMT },
+        inputs: &NmtInputs,
         ..COMPETITOR
     });
 
@@ -256,7 +253,7 @@ impl Recipe {
     pub const DFAOIT: Self = Self(&Declaration {
         name: "dfaoit",
         method: "dfaoit",
-        inputs: &DfaoitInputs { features: &DFAOIT },
+        inputs: &DfaoitInputs,
         output: Output::Color,
         budget: Budget {
             batch: 1024,
@@ -290,11 +287,8 @@ impl Recipe {
 
     /// The names of the inputs, in order.
     pub fn input_names(self) -> Vec<&'static str> {
-        self.inputs
-            .features()
-            .iter()
-            .map(|about| about.name)
-            .collect()
+        let features = self.inputs.features().into_iter();
+        features.map(|about| about.name).collect()
     }
 }
 

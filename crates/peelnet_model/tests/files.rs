@@ -98,10 +98,8 @@ fn spoilt(tensors: impl Fn(&mut Tensors), json: impl Fn(&mut Value)) -> Vec<u8> 
         .collect();
     tensors(&mut all);
     let views = all.iter().map(|(name, (dtype, shape, data))| {
-        (
-            name.clone(),
-            TensorView::new(*dtype, shape.clone(), data).unwrap(),
-        )
+        let view = TensorView::new(*dtype, shape.clone(), data);
+        (name.clone(), view.unwrap())
     });
     let metadata = HashMap::from([("peelnet".to_owned(), value.to_string())]);
     safetensors::serialize(views, Some(metadata)).unwrap()
@@ -113,17 +111,14 @@ fn bad_tensors() {
         let bytes = vec![0u8; 4 * shape.iter().product::<usize>()];
         t.insert(name.to_owned(), (Dtype::F32, shape.to_vec(), bytes));
     };
+    let first = "layers.0.weight";
     let zeros: [(&str, &[usize], &str); 6] = [
         ("extra", &[1], "\"extra\" belongs to no layer"),
         ("layers.99999999999.bias", &[1], "belongs to no layer"),
-        ("layers.0.weight", &[3, 10], "is F32 [10], expected F32 [3]"),
-        ("layers.0.weight", &[30], "expected F32 [outputs, inputs]"),
+        (first, &[3, 10], "is F32 [10], expected F32 [3]"),
+        (first, &[30], "expected F32 [outputs, inputs]"),
+        (first, &[10, 4], "takes 4 inputs but the metadata"),
         ("layers.1.weight", &[8, 9], "takes 9 inputs but the layer"),
-        (
-            "layers.0.weight",
-            &[10, 4],
-            "takes 4 inputs but the metadata",
-        ),
     ];
     for (name, shape, words) in zeros {
         let bytes = spoilt(|t| insert(t, name, shape), |_| ());

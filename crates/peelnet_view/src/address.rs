@@ -3,6 +3,7 @@
 use crate::app::App;
 #[cfg(any(test, target_arch = "wasm32"))]
 use crate::app::Start;
+use peelnet_core::files;
 
 /// Eye and target, and the field of view in degrees: six or seven numbers, as `--camera` gives them.
 pub fn camera_numbers(text: &str) -> Result<Vec<f32>, String> {
@@ -19,7 +20,7 @@ pub fn camera_numbers(text: &str) -> Result<Vec<f32>, String> {
 
 /// For a shell, on one line.
 fn quoted(text: &str) -> String {
-    shell_words::quote(&peelnet_core::files::one_line(text)).into_owned()
+    shell_words::quote(&files::one_line(text)).into_owned()
 }
 
 impl App {
@@ -100,10 +101,7 @@ pub(crate) fn read(query: &str, start: &mut Start) -> Vec<String> {
         let value = urlencoding::decode_binary(spaced.as_bytes());
         let value = String::from_utf8_lossy(&value);
         if let Err(why) = take(name, &value) {
-            let (value, why) = (
-                peelnet_core::files::printable(&value),
-                crate::task::one_line(&*why),
-            );
+            let (value, why) = (files::printable(&value), crate::task::one_line(&*why));
             wrong.push(format!("the address says {name}={value}: {why}"));
         }
     }

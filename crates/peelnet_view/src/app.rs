@@ -9,8 +9,8 @@ use crate::{
     memory,
     messages::Messages,
     numbers::{EXACT, ErrorJob, Key, LayerCounter},
-    output::Output,
     panels::state::State,
+    saving::Output,
     script::Script,
     slot::{Network, Slot},
     stage::{Source, Stage},
@@ -69,7 +69,6 @@ impl Start {
     }
 }
 
-/// Has egui draw with a device that is open.
 pub(crate) fn configuration(gpu: &Gpu) -> WgpuConfiguration {
     WgpuConfiguration {
         wgpu_setup: WgpuSetup::Existing(WgpuSetupExisting {

@@ -80,17 +80,14 @@ impl Display {
         Ok(())
     }
 
-    /// The target in this size, known to egui.
     fn sized(
         &mut self,
         gpu: &Gpu,
         egui: &RenderState,
         size: [u32; 2],
     ) -> Result<wgpu::TextureView, GpuError> {
-        if let Some((view, _)) = self
-            .target
-            .as_ref()
-            .filter(|(view, _)| size_of(view) == size)
+        if let Some((view, _)) = &self.target
+            && size_of(view) == size
         {
             return Ok(view.clone());
         }

@@ -32,11 +32,9 @@ impl Sphere {
         if low.x > high.x {
             (low, high) = (Vec3::ZERO, Vec3::ZERO);
         }
-        let radius = 0.5 * (high - low).length();
-        Self {
-            middle: 0.5 * (low + high),
-            radius: if radius > 0.0 { radius } else { 1.0 },
-        }
+        let (middle, radius) = (0.5 * (low + high), 0.5 * (high - low).length());
+        let radius = if radius > 0.0 { radius } else { 1.0 };
+        Self { middle, radius }
     }
 }
 
@@ -57,10 +55,8 @@ pub(crate) fn orbit(camera: &mut Camera, yaw: f32, pitch: f32) {
     let right = up.cross(away).normalize_or(axes(camera).x_axis);
     // Not over the pole: the picture would turn upside down.
     let height = away.angle_between(up);
-    let pitch = pitch.clamp(
-        (height - (std::f32::consts::PI - POLE)).min(0.0),
-        (height - POLE).max(0.0),
-    );
+    let lowest = (height - (std::f32::consts::PI - POLE)).min(0.0);
+    let pitch = pitch.clamp(lowest, (height - POLE).max(0.0));
     camera.position = camera.target + Quat::from_axis_angle(right, -pitch) * away;
 }
 
@@ -68,10 +64,7 @@ pub(crate) fn orbit(camera: &mut Camera, yaw: f32, pitch: f32) {
 pub(crate) fn pan(camera: &mut Camera, right: f32, down: f32) {
     let distance = (camera.position - camera.target).length();
     let height = 2.0 * distance * (0.5 * camera.fov_y_degrees.to_radians()).tan();
-    let axes = axes(camera);
-    let step = height * (down * axes.y_axis - right * axes.x_axis);
-    camera.position += step;
-    camera.target += step;
+    fly(camera, height * Vec3::new(-right, down, 0.0));
 }
 
 pub(crate) fn zoom(camera: &mut Camera, factor: f32, all: Sphere) {
@@ -82,8 +75,7 @@ pub(crate) fn zoom(camera: &mut Camera, factor: f32, all: Sphere) {
 
 /// Moves eye and target by a vector of right, up and forward, scene units.
 pub(crate) fn fly(camera: &mut Camera, step: Vec3) {
-    let axes = axes(camera);
-    let step = axes.x_axis * step.x + axes.y_axis * step.y - axes.z_axis * step.z;
+    let step = axes(camera) * Vec3::new(step.x, step.y, -step.z);
     camera.position += step;
     camera.target += step;
 }

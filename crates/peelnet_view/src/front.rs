@@ -44,13 +44,9 @@ pub(crate) struct Front {
 
 impl Front {
     pub fn measure(&mut self, stage: &Stage, view: View) {
-        let measured = Rc::default();
-        let work = all(Rc::clone(&stage.renderer), view, Rc::clone(&measured));
-        *self = Self {
-            job: Job::default(),
-            view: Some(view),
-            measured,
-        };
+        *self = Self::default();
+        self.view = Some(view);
+        let work = all(Rc::clone(&stage.renderer), view, Rc::clone(&self.measured));
         self.job.begin((), work);
     }
 }

@@ -7,6 +7,7 @@ use crate::{
     stage::{Files, Source},
 };
 use egui::{Context, Key, Modifiers};
+use peelnet_core::files::shown;
 use peelnet_render::MethodSpec;
 use peelnet_scene::file::ENDINGS;
 use std::{
@@ -54,9 +55,7 @@ fn find_file(paths: &[PathBuf]) -> Result<&PathBuf, String> {
     let mut endings = std::iter::once(MODEL).chain(ENDINGS);
     let found = endings.find_map(|wanted| paths.iter().find(|path| has_ending(path, wanted)));
     found.ok_or_else(|| {
-        let name = paths
-            .first()
-            .map_or("nothing".into(), |p| peelnet_core::files::shown(p));
+        let name = paths.first().map_or("nothing".into(), |p| shown(p));
         let scenes = ENDINGS.map(|e| format!(".{e}")).join(", ");
         format!("{name}: not a scene or a network; drop a {scenes} or .{MODEL} file")
     })
@@ -104,11 +103,8 @@ impl App {
             self.next_method(ui.input(|i| i.events.iter().any(is_shifted)));
         }
         if pressed(Key::C) {
-            let mut after = MODES
-                .iter()
-                .skip_while(|m| m.0 != self.compare.mode)
-                .skip(1);
-            self.compare.mode = after.next().unwrap_or(&MODES[0]).0;
+            let now = MODES.iter().position(|m| m.0 == self.compare.mode);
+            self.compare.mode = MODES[now.map_or(0, |k| k + 1) % MODES.len()].0;
         }
         if pressed(Key::F) {
             self.fit();
@@ -143,12 +139,9 @@ impl App {
 
     fn fly(&mut self, ui: &Context) {
         let down = |key: Key| ui.input(|i| i.key_down(key) && i.modifiers == Modifiers::NONE);
-        let axis = |plus: Key, minus: Key| f32::from(down(plus)) - f32::from(down(minus));
-        let step = glam::Vec3::new(
-            axis(Key::D, Key::A),
-            axis(Key::E, Key::Q),
-            axis(Key::W, Key::S),
-        );
+        let axis = |(plus, minus): (Key, Key)| f32::from(down(plus)) - f32::from(down(minus));
+        let keys = [(Key::D, Key::A), (Key::E, Key::Q), (Key::W, Key::S)];
+        let step = glam::Vec3::from(keys.map(axis));
         if step != glam::Vec3::ZERO {
             let time = ui.input(|i| i.stable_dt).min(0.1);
             self.move_eye(|camera, all| eye::fly(camera, step * (SPEED * time * all.radius)));

@@ -23,7 +23,6 @@ mod inspect;
 mod memory;
 mod messages;
 mod numbers;
-mod output;
 mod panels;
 mod saving;
 mod script;

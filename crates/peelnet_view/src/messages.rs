@@ -33,7 +33,6 @@ impl Messages {
         self.0.push((is_error, text));
     }
 
-    /// Shows all lines, each with a button that puts it away.
     pub fn show(&mut self, ui: &mut egui::Ui) {
         self.0.retain(|(is_error, text)| {
             let row = ui.horizontal(|ui| {

@@ -113,10 +113,8 @@ async fn counted(renderer: Rc<Renderer>, view: View) -> Fallible<LayerMap> {
     let frame = renderer.image_async(&mut prepared, &view.camera).await?;
     let pixels = frame.image.pixels;
     let gpu = renderer.gpu();
-    let (format, usage) = (
-        wgpu::TextureFormat::Rgba32Float,
-        wgpu::TextureUsages::COPY_DST,
-    );
+    let format = wgpu::TextureFormat::Rgba32Float;
+    let usage = wgpu::TextureUsages::COPY_DST;
     let texture = gpu.texture("layers", format, view.size, 1, usage)?;
     gpu.queue.write_texture(
         texture.texture().as_image_copy(),

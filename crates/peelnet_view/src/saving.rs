@@ -1,14 +1,40 @@
 //! What leaves the window: pictures, numbered frames, scene files and shader text.
 
-use crate::{app::App, eye, slot::Slot, stage::Stage, task::Fallible};
+use crate::{
+    app::App,
+    eye,
+    slot::Slot,
+    stage::Stage,
+    task::{Fallible, Job, one_line},
+};
 use peelnet_core::files::shown;
 use peelnet_export::{Language, Options};
 use peelnet_render::{Image, ImageFormat};
 use std::{
+    cell::Cell,
     f32::consts::TAU,
     path::{Path, PathBuf},
     rc::Rc,
 };
+
+/// What is being saved, and what was.
+#[derive(Default)]
+pub(crate) struct Output {
+    pub job: Job<(), String>,
+    /// Frames written, and all.
+    pub progress: Rc<Cell<(u32, u32)>>,
+}
+
+impl Output {
+    pub fn last(&self) -> Option<&Result<String, String>> {
+        self.job.get(&())
+    }
+
+    /// Says what was done at once.
+    fn show(&mut self, result: Fallible<String>) {
+        self.job.last = Some(((), result.map_err(|e| one_line(&*e))));
+    }
+}
 
 impl App {
     /// Draws the view into a file, as `peelnet render` does.

@@ -115,7 +115,6 @@ impl Slot {
         }
     }
 
-    /// A network from a file, or the shipped ones.
     pub fn set_network(&mut self, network: Option<Network>) {
         self.network = network;
         self.forget();

@@ -28,7 +28,6 @@ pub(crate) struct Source {
 }
 
 impl Source {
-    /// A file, or the name of a shipped scene.
     pub fn named(path: impl Into<PathBuf>) -> Self {
         Self {
             path: path.into(),

@@ -70,7 +70,6 @@ fn steps(window: &mut Window) {
     window.run_steps(4);
 }
 
-/// Frames until something holds.
 fn until(window: &mut Window, what: &str, holds: impl Fn(&App) -> bool) {
     let begin = Instant::now();
     while !holds(window.state()) {
@@ -101,12 +100,8 @@ fn every_method_has_its_controls() {
         w.state_mut().first.set_spec(spec);
         steps(&mut w);
         for parameter in m.all_parameters() {
-            assert!(
-                w.query_all_by_label(parameter.name).next().is_some(),
-                "{}: {}",
-                m.name,
-                parameter.name
-            );
+            let mut controls = w.query_all_by_label(parameter.name);
+            assert!(controls.next().is_some(), "{}: {}", m.name, parameter.name);
         }
         assert_eq!(w.state().first.failure, None, "{}", m.name);
         w.check_accessibility();
@@ -237,10 +232,10 @@ fn the_eye_and_the_divider_are_dragged() {
     let before = w.state().camera;
     drag(&mut w, |picture| picture.center() + egui::vec2(40.0, 10.0));
     let after = w.state().camera;
-    let distance = |c: &peelnet_scene::Camera| (c.position - c.target).length();
     assert_ne!(before.position, after.position);
     assert_eq!(before.target, after.target);
-    assert!((distance(&before) / distance(&after) - 1.0).abs() < 1e-5);
+    let [far, near] = [before, after].map(|c| (c.position - c.target).length());
+    assert!((far / near - 1.0).abs() < 1e-5);
     w.state_mut().compare.mode = Mode::Split;
     steps(&mut w);
     drag(&mut w, |picture| picture.lerp_inside([0.25, 0.5]));
@@ -326,10 +321,8 @@ fn links_show_the_same_again() {
         let mut start = Start::new("", "abuffer".parse().unwrap());
         assert_eq!(address::read(&app.query().unwrap(), &mut start), [""; 0]);
         assert_eq!(start.scene, app.stage.as_ref().unwrap().source.path);
-        assert_eq!(
-            (start.method, start.time, start.bare),
-            (app.first.spec.clone(), Some(time), true)
-        );
+        let read = (start.method, start.time, start.bare);
+        assert_eq!(read, (app.first.spec.clone(), Some(time), true));
         (start.view, start.camera)
     };
     app.show_view(0);

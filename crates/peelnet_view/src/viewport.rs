@@ -112,22 +112,17 @@ impl App {
         let mode = self.compare.mode_at(ui.ctx());
         match mode {
             Mode::Split | Mode::Beside => {
-                let share = if mode == Mode::Split {
-                    self.compare.divider
-                } else {
-                    0.5
-                };
+                let split = Some(self.compare.divider).filter(|_| mode == Mode::Split);
+                let share = split.unwrap_or(0.5);
                 let x = rect.left() + share * rect.width();
                 painter.vline(x, rect.y_range(), line);
                 write(x - 10.0, Align2::RIGHT_TOP, first);
                 write(x + 10.0, Align2::LEFT_TOP, second);
             }
-            Mode::Error => {
-                let most = self.compare.scale;
-                corner(format!(
-                    "|{first} - {second}|: black 0, yellow {most:.0} of 255"
-                ));
-            }
+            Mode::Error => corner(format!(
+                "|{first} - {second}|: black 0, yellow {:.0} of 255",
+                self.compare.scale
+            )),
             Mode::Layers => corner(match self.counter.map() {
                 Some(map) => format!("layers: black 0, yellow {:.0}", map.most),
                 None => "counting layers".to_owned(),

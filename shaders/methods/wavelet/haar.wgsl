@@ -1,6 +1,6 @@
 // The absorbance in front of a depth as a step function in Haar wavelets (Aizenshtein, Smal & McGuire, "Wavelet Transparency",
 // 2022): the average over the whole range, then half the difference of the averages of every block's halves, for blocks of all,
-// halves, quarters and, of rank 3, eighths of the bins. Twin of peelnet_core::methods::wavelet.
+// halves, quarters and, of rank 3, eighths of the bins. The CPU reference is methods/wavelet/reference.rs.
 import package::parameters::BINS;
 
 struct Coefficients {

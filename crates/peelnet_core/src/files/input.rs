@@ -1,7 +1,8 @@
 //! Files that are read: regular ones, of bounded size.
 
+use super::invalid;
 use std::{
-    fs::{File, metadata},
+    fs::{File, Metadata, metadata},
     io::{self, Read as _},
     path::Path,
 };
@@ -42,15 +43,12 @@ pub fn read_head(path: &Path, limit: u64) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-fn check_regular(metadata: &std::fs::Metadata) -> io::Result<()> {
+fn check_regular(metadata: &Metadata) -> io::Result<()> {
     if metadata.is_dir() {
         return Err(io::ErrorKind::IsADirectory.into());
     }
     if !metadata.is_file() {
-        return Err(io::Error::new(
-            io::ErrorKind::InvalidInput,
-            "not a regular file",
-        ));
+        return Err(invalid("not a regular file"));
     }
     Ok(())
 }

@@ -7,6 +7,11 @@ mod input;
 mod output;
 mod text;
 
+/// An error of a path that is not what was asked for.
+fn invalid(why: &str) -> std::io::Error {
+    std::io::Error::new(std::io::ErrorKind::InvalidInput, why)
+}
+
 pub use input::{check_size, open, read, read_head};
 pub use output::{
     Kind, Outputs, Refused, STDOUT, Unfinished, check_file, check_is_folder, folder_of, identity,

@@ -4,7 +4,7 @@
 //! ([`Outputs`]): an input is not replaced, nor a file of another kind, unless the user forces it. What was allowed then still holds just
 //! before the rename, or nothing is replaced ([`write_whole`]).
 
-use crate::files::{read_head, shown};
+use super::{invalid, read_head, shown};
 use std::{
     collections::{BTreeMap, BTreeSet},
     fs::{self, Metadata},
@@ -35,23 +35,17 @@ fn local(path: &Path) -> io::Result<&Path> {
         return Ok(path);
     }
     let address = path.to_str();
-    address
-        .and_then(|address| address.strip_prefix("file://"))
-        .filter(|path| path.starts_with('/'))
-        .map(Path::new)
-        .ok_or_else(|| invalid("is no file of this machine; name one"))
+    let file = address.and_then(|address| address.strip_prefix("file://"));
+    let file = file.filter(|path| path.starts_with('/')).map(Path::new);
+    file.ok_or_else(|| invalid("is no file of this machine; name one"))
 }
 
 /// Whether a name can only be a folder's: it ends in a separator, or in one and a dot. A [`Path`] of it does not say so.
 fn is_folder_name(path: &Path) -> bool {
     let name = path.as_os_str().as_encoded_bytes();
     let name = name.strip_suffix(b".").unwrap_or(name);
-    name.last()
-        .is_some_and(|&b| std::path::is_separator(char::from(b)))
-}
-
-fn invalid(why: &str) -> io::Error {
-    io::Error::new(io::ErrorKind::InvalidInput, why)
+    let last = name.last().copied().map(char::from);
+    last.is_some_and(std::path::is_separator)
 }
 
 /// Where an absolute path of a file leads. Its last part stays, so that a link is seen as one.
@@ -316,16 +310,14 @@ pub fn folder_of(path: &Path) -> &Path {
 fn check_folder(folder: &Path) -> io::Result<()> {
     let folder = absolute(local(folder)?)?;
     let nearest = folder.ancestors().find(|folder| folder.exists());
-    tempfile::tempfile_in(nearest.unwrap_or(&folder))
-        .map(drop)
-        .map_err(plain)
+    let created = tempfile::tempfile_in(nearest.unwrap_or(&folder));
+    created.map(drop).map_err(plain)
 }
 
 /// An error without the temporary file's name, which would mislead.
 fn plain(error: io::Error) -> io::Error {
-    error
-        .raw_os_error()
-        .map_or_else(|| error.kind().into(), io::Error::from_raw_os_error)
+    let code = error.raw_os_error();
+    code.map_or_else(|| error.kind().into(), io::Error::from_raw_os_error)
 }
 
 /// A kind of file that peelnet writes, known by its content: an output replaces only a file of its own kind.
@@ -406,13 +398,11 @@ impl Outputs {
         force: (&'static str, bool),
         inputs: impl IntoIterator<Item = P>,
     ) -> Self {
-        let inputs = inputs.into_iter();
+        // A shipped scene is no file.
+        let file = |path: P| local(path.as_ref()).ok()?.canonicalize().ok();
         Self {
             force,
-            // A shipped scene is no file.
-            inputs: inputs
-                .filter_map(|path| local(path.as_ref()).ok()?.canonicalize().ok())
-                .collect(),
+            inputs: inputs.into_iter().filter_map(file).collect(),
             taken: Vec::new(),
             replaced: Vec::new(),
         }
@@ -429,7 +419,7 @@ impl Outputs {
     }
 
     fn check(&mut self, path: &Path, kind: Kind) -> Result<(), Refused> {
-        let (force, is_forced) = self.force;
+        let is_forced = self.force.1;
         let output = Output::look(path)?;
         if let Some(file) = &output.file {
             check_folder(folder_of(file))?;
@@ -439,22 +429,15 @@ impl Outputs {
             return Err(Refused::new(true, why));
         }
         if self.is_input(&output) && !is_forced {
-            let why = format!(
-                "this command reads that file; choose another name, or replace it with {force}"
-            );
-            return Err(Refused::new(true, why));
+            return Err(self.not_forced(true, "this command reads that file"));
         }
         if output.is_read_only() && !is_forced {
-            let why = format!("{READ_ONLY}; choose another name, or replace it with {force}");
-            return Err(Refused::new(false, why));
+            return Err(self.not_forced(false, READ_ONLY));
         }
         if let Some(is_ours) = kind.is_ours(&output)? {
             if !is_ours && !is_forced {
-                let why = format!(
-                    "the file there is not {}; choose another name, or replace it with {force}",
-                    kind.name
-                );
-                return Err(Refused::new(false, why));
+                let why = format!("the file there is not {}", kind.name);
+                return Err(self.not_forced(false, &why));
             }
             let what = if is_ours { kind.name } else { "another file" };
             self.replaced.push((path.to_owned(), what));
@@ -493,10 +476,8 @@ impl Outputs {
     ) -> Result<(), Refused> {
         let entries = fs::read_dir(folder).into_iter().flatten().flatten();
         let mut names: Vec<PathBuf> = entries.map(|e| e.file_name().into()).collect();
-        names.retain(|name| {
-            name.extension()
-                .is_some_and(|e| e.eq_ignore_ascii_case(ending))
-        });
+        let is_like = |name: &PathBuf| Some(name.extension()?.eq_ignore_ascii_case(ending));
+        names.retain(|name| is_like(name) == Some(true));
         names.sort();
         self.folder(setting, folder, names.iter().map(|name| (name, kind)))?;
         let found = || {
@@ -531,14 +512,11 @@ impl Outputs {
     ) -> Result<(), Refused> {
         let read = read.into_iter().filter_map(|f| f.canonicalize().ok());
         self.inputs.extend(read);
-        let (force, is_forced) = self.force;
         let input = self.taken.iter().find(|output| self.is_input(output));
-        if let Some(output) = input.filter(|_| !is_forced) {
-            let why = format!(
-                "--out: would replace {}, which a scene of this command reads; choose another name, or replace it with {force}",
-                shown(&output.path)
-            );
-            return Err(Refused::new(true, why));
+        if let Some(output) = input.filter(|_| !self.force.1) {
+            let path = shown(&output.path);
+            let why = format!("--out: would replace {path}, which a scene of this command reads");
+            return Err(self.not_forced(true, &why));
         }
         Ok(())
     }
@@ -559,11 +537,13 @@ impl Outputs {
     }
 
     fn is_input(&self, output: &Output) -> bool {
-        let is_read = |file: &PathBuf| {
-            let mut inputs = self.inputs.iter();
-            inputs.any(|input| file.starts_with(input) || is_same(file, input))
-        };
-        output.file.as_ref().is_some_and(is_read)
+        let (file, mut inputs) = (output.file.as_ref(), self.inputs.iter());
+        file.is_some_and(|file| inputs.any(|i| file.starts_with(i) || is_same(file, i)))
+    }
+
+    fn not_forced(&self, is_wrong_value: bool, why: &str) -> Refused {
+        let hint = "choose another name, or replace it with";
+        Refused::new(is_wrong_value, format!("{why}; {hint} {}", self.force.0))
     }
 }
 
@@ -710,10 +690,17 @@ mod tests {
     #[cfg(unix)]
     #[test]
     fn only_what_is_allowed_is_replaced() {
-        use std::os::fd::AsRawFd as _;
+        use std::os::{fd::AsRawFd as _, unix::fs::symlink};
         type Change = fn(&Path) -> io::Result<()>;
         let no: Change = |_| Ok(());
         let appears: Change = |dir| fs::write(dir.join("new"), "note: another's");
+        let written: Change = |dir| fs::write(dir.join("empty"), "mine");
+        let replaced: Change = |dir| fs::rename(dir.join("mine"), dir.join("note"));
+        let linked: Change = |dir| symlink("mine", dir.join("new"));
+        let elsewhere: Change = |dir| {
+            fs::remove_file(dir.join("near"))?;
+            symlink(".", dir.join("near"))
+        };
         let cases: &[(&str, Change, &str)] = &[
             ("DIR/new", no, ""),
             ("DIR/empty", no, ""),
@@ -751,29 +738,10 @@ mod tests {
             ("DIR/new", appears, "another file came there"),
             ("DIR/deep/../new", appears, "another file came there"),
             ("DIR/note", |dir| fs::remove_file(dir.join("note")), ""),
-            (
-                "DIR/empty",
-                |dir| fs::write(dir.join("empty"), "mine"),
-                "the file changed",
-            ),
-            (
-                "DIR/note",
-                |dir| fs::rename(dir.join("mine"), dir.join("note")),
-                "the file changed",
-            ),
-            (
-                "DIR/new",
-                |dir| std::os::unix::fs::symlink("mine", dir.join("new")),
-                "is a link",
-            ),
-            (
-                "DIR/near/note",
-                |dir| {
-                    fs::remove_file(dir.join("near"))?;
-                    std::os::unix::fs::symlink(".", dir.join("near"))
-                },
-                "the file changed",
-            ),
+            ("DIR/empty", written, "the file changed"),
+            ("DIR/note", replaced, "the file changed"),
+            ("DIR/new", linked, "is a link"),
+            ("DIR/near/note", elsewhere, "the file changed"),
         ];
         for (path, change, words) in cases {
             let (dir, open) = folder();

@@ -32,12 +32,8 @@ pub fn error_line(error: &dyn Error) -> String {
         }
         next = source.source();
     }
-    let lines: Vec<&str> = text
-        .lines()
-        .map(str::trim)
-        .filter(|line| !line.is_empty())
-        .collect();
-    lines.join(" ")
+    let lines = text.lines().map(str::trim).filter(|line| !line.is_empty());
+    lines.collect::<Vec<_>>().join(" ")
 }
 
 /// A path for a message: one line, whatever it holds.
@@ -53,15 +49,10 @@ pub fn counted(count: u64, noun: &str) -> String {
 
 /// A whole number with commas between the thousands.
 pub fn thousands(count: u64) -> String {
-    let digits = count.to_string();
-    let mut text = String::new();
-    for (k, digit) in digits.chars().enumerate() {
-        if k > 0 && (digits.len() - k).is_multiple_of(3) {
-            text.push(',');
-        }
-        text.push(digit);
+    match count / 1000 {
+        0 => count.to_string(),
+        more => format!("{},{:03}", thousands(more), count % 1000),
     }
-    text
 }
 
 /// Text of several lines with all that [`printable`] escapes escaped, but line ends: for whole messages, whose length is theirs to choose.
@@ -90,15 +81,8 @@ fn escaped(
     if text.chars().all(&is_kept) {
         return Cow::Borrowed(text);
     }
-    let mut shown = String::new();
-    for c in text.chars() {
-        if is_kept(c) {
-            shown.push(c);
-        } else {
-            shown.push_str(&escape(c));
-        }
-    }
-    Cow::Owned(shown)
+    let shown = |c: char| if is_kept(c) { c.into() } else { escape(c) };
+    Cow::Owned(text.chars().map(shown).collect())
 }
 
 /// Whether a character does something else than show itself: controls, separators of lines, marks of direction, and what has no width.

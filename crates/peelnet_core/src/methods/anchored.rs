@@ -13,8 +13,8 @@ use crate::{
     guards::FILL_MAX,
     methods::{known::KnownFragment, moments::power::four_moment_bounds},
     statistics::{
-        self, DEPTH_CODES, FARTHEST_CODE, NEAREST_CODE, SAME_CODE, Statistics, SumPrecision,
-        depth_code, zeta_of_code,
+        DEPTH_CODES, FARTHEST_CODE, NEAREST_CODE, SAME_CODE, Statistics, SumPrecision, depth_code,
+        zeta_of_code,
     },
 };
 
@@ -99,16 +99,14 @@ pub fn known_fragments(
     precision: SumPrecision,
 ) -> Vec<KnownFragment<Residual>> {
     let points = super::points(fragments, warp);
-    let visible = || points.iter().filter(|point| point.2);
+    let visible = points.iter().filter(|point| point.2);
     // Without a visible fragment the targets keep their clear values.
-    let first = visible().map(|p| depth_code(p.1)).min();
-    let first = first.unwrap_or(statistics::DEPTH_CODES - 1);
-    let near = visible()
-        .map(|&(b, z, _)| NEAREST_CODE.mirrored(z, b))
-        .max();
-    let near = near.unwrap_or(0);
-    let far = visible().map(|&(b, z, _)| FARTHEST_CODE.level(z, b)).max();
-    let far = far.unwrap_or(0);
+    let (mut first, mut near, mut far) = (DEPTH_CODES - 1, 0, 0);
+    for &(b, zeta, _) in visible {
+        first = first.min(depth_code(zeta));
+        near = near.max(NEAREST_CODE.mirrored(zeta, b));
+        far = far.max(FARTHEST_CODE.level(zeta, b));
+    }
     let s = Statistics {
         moments: Statistics::moments(&points, precision),
         nearest: zeta_of_code(first),
@@ -240,8 +238,7 @@ mod tests {
                 let depth = random.log_between(0.1, 500.0);
                 Fragment::new(depth, random.between(0.02, 0.98), random.color())
             };
-            let mut f: Vec<_> = (0..12).map(&mut layer).collect();
-            crate::fragment::sort_front_to_back(&mut f);
+            let f = over::sorted(&(0..12).map(&mut layer).collect::<Vec<_>>());
             let points = points(&f);
             let exact = over::composite(&f, C0);
             let all = known_fragments(&points, &warp, SumPrecision::Exact);
@@ -254,12 +251,8 @@ mod tests {
                     (front - all[i].front) / x.absorbance
                 });
                 let same_level = all.iter().filter(|f| f.unknown.is_none()).count() > 2;
-                for k in 0..3 {
-                    assert!(
-                        same_level || (got[k] - exact[k]).abs() < 1e-5,
-                        "{seed}: {got:?} {exact:?}"
-                    );
-                }
+                let is_near = (0..3).all(|k| (got[k] - exact[k]).abs() < 1e-5);
+                assert!(same_level || is_near, "{seed}: {got:?} {exact:?}");
             }
         }
     }

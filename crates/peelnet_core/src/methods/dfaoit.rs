@@ -66,9 +66,8 @@ pub fn composite(
     if sorted.len() <= FRONT || transmittance == 1.0 {
         return over::composite(&sorted, background);
     }
-    let color = network(&Layers::from_fragments(
-        sorted.iter().map(|f| (f.alpha, f.color)),
-    ));
+    let layers = sorted.iter().map(|f| (f.alpha, f.color));
+    let color = network(&Layers::from_fragments(layers));
     std::array::from_fn(|k| color[k] + transmittance * background[k])
 }
 

@@ -13,7 +13,6 @@ pub struct KnownFragment<U> {
 }
 
 impl<U> KnownFragment<U> {
-    /// One whose weight is known.
     pub const fn known(front: f64) -> Self {
         Self {
             front,

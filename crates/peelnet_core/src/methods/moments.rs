@@ -10,7 +10,7 @@ pub mod power;
 mod roots;
 pub mod trigonometric;
 
-use crate::absorbance::DepthWarp;
+use crate::{absorbance::DepthWarp, statistics::moments_of};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Basis {
@@ -72,10 +72,8 @@ impl Moments {
     pub fn add(&mut self, b: f64, zeta: f64) {
         match self.basis {
             Basis::Power(_) => {
-                let mut power = b;
-                for sum in &mut self.sums {
-                    *sum += power;
-                    power *= zeta;
+                for (sum, moment) in self.sums.iter_mut().zip(moments_of(b, zeta)) {
+                    *sum += moment;
                 }
             }
             Basis::Trigonometric(_) => trigonometric::add(&mut self.sums, b, zeta),
@@ -90,10 +88,9 @@ impl Moments {
             return 1.0;
         }
         let means = self.sums.map(|sum| sum / total);
+        let [_, m1, m2, m3, m4, ..] = means;
         let (low, high) = match self.basis {
-            Basis::Power(4) => {
-                power::four_moment_bounds([means[1], means[2], means[3], means[4]], bias, zeta)
-            }
+            Basis::Power(4) => power::four_moment_bounds([m1, m2, m3, m4], bias, zeta),
             Basis::Power(6) => power::bounds::<4>(means, bias, zeta),
             Basis::Power(_) => power::bounds::<5>(means, bias, zeta),
             Basis::Trigonometric(count) => trigonometric::bounds(means, count, bias, zeta),

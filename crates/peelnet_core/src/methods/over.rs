@@ -22,11 +22,9 @@ pub fn composite(fragments: &[Fragment], background: [f32; 3]) -> [f32; 3] {
 
 /// The same in 64 bits, back to front (over-blending): independent of [`composite`] in order and precision.
 pub fn composite_f64(fragments: &[Fragment], background: [f32; 3]) -> [f64; 3] {
-    sorted(fragments)
-        .iter()
-        .rev()
-        .fold(background.map(f64::from), |dst, f| {
-            let a = f64::from(f.alpha);
-            std::array::from_fn(|k| a * f64::from(f.color[k]) + (1.0 - a) * dst[k])
-        })
+    let back_to_front = sorted(fragments).into_iter().rev();
+    back_to_front.fold(background.map(f64::from), |dst, f| {
+        let a = f64::from(f.alpha);
+        std::array::from_fn(|k| a * f64::from(f.color[k]) + (1.0 - a) * dst[k])
+    })
 }

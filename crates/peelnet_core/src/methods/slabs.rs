@@ -57,11 +57,11 @@ pub struct Design {
     pub apart: bool,
 }
 
-/// A slab that keeps its nearest fragment.
-const fn until(end: f64, mean: bool, farthest: bool) -> Kept {
+/// A slab that keeps its mean depth and its nearest fragment.
+const fn until(end: f64, farthest: bool) -> Kept {
     Kept {
         end,
-        mean,
+        mean: true,
         nearest: true,
         farthest,
     }
@@ -81,50 +81,34 @@ impl Layout {
 
     /// Its name in methods, recipes and shaders.
     pub const fn name(self) -> &'static str {
-        match self {
-            Self::Small => "small",
-            Self::Medium => "medium",
-            Self::Large => "large",
-        }
+        ["small", "medium", "large"][self as usize]
     }
 
     pub const fn design(self) -> Design {
-        match self {
-            Self::Small => Design::SMALL,
-            Self::Medium => Design::MEDIUM,
-            Self::Large => Design::LARGE,
-        }
+        [Design::SMALL, Design::MEDIUM, Design::LARGE][self as usize]
     }
 }
 
 impl Design {
     /// 30 bytes a pixel, colours included: three targets beside the range.
     pub const SMALL: Self = Self {
-        slabs: &[
-            until(0.15, true, true),
-            until(0.5, true, false),
-            until(1.0, true, false),
-        ],
+        slabs: &[until(0.15, true), until(0.5, false), until(1.0, false)],
         records: FARTHEST_CODE,
         extent: Extent::Pixel,
         apart: false,
     };
     /// 34 bytes a pixel, three targets beside the range. The first slab is the narrowest: what is seen most lies in it.
     pub const MEDIUM: Self = Self {
-        slabs: &[
-            until(0.15, true, true),
-            until(0.55, true, true),
-            until(1.0, true, true),
-        ],
+        slabs: &[until(0.15, true), until(0.55, true), until(1.0, true)],
         ..Self::SMALL
     };
     /// 42 bytes a pixel, four targets beside the range: as much as one pass of plain WebGPU writes.
     pub const LARGE: Self = Self {
         slabs: &[
-            until(0.12, true, true),
-            until(0.4, true, true),
-            until(0.75, true, true),
-            until(1.0, true, true),
+            until(0.12, true),
+            until(0.4, true),
+            until(0.75, true),
+            until(1.0, true),
         ],
         ..Self::SMALL
     };
@@ -139,13 +123,8 @@ impl Design {
 
     /// Bytes a pixel of all targets, colours included.
     pub fn bytes(&self) -> u32 {
-        let channels = |k: &Kept| {
-            1 + [k.mean, k.nearest, k.farthest]
-                .map(u32::from)
-                .iter()
-                .sum::<u32>()
-        };
-        let channels: u32 = self.slabs.iter().map(channels).sum();
+        let kept = |k: &Kept| [true, k.mean, k.nearest, k.farthest];
+        let channels: u32 = self.slabs.iter().flat_map(kept).map(u32::from).sum();
         let range = if self.extent == Extent::Frame { 0 } else { 2 };
         range + 2 * channels + 8 * (1 + u32::from(self.apart))
     }
@@ -237,7 +216,7 @@ pub struct Interior {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Slabs {
     design: Design,
-    range: Range,
+    pub range: Range,
     slabs: [Slab; MAX_SLABS],
 }
 
@@ -263,10 +242,6 @@ impl Slabs {
             }
         }
         all
-    }
-
-    pub const fn range(&self) -> Range {
-        self.range
     }
 
     /// What targets hold of each slab: its absorbance, absorbance times depth in the slab, and the halves that stand for its nearest and its
@@ -301,15 +276,11 @@ impl Slabs {
         let others = (slab.absorbance - absorbance).max(0.0);
         let kept = &self.design.slabs[place.slab];
         let records = self.design.records;
-        let known = if counts && kept.nearest && records.is_kept(place.near, slab.nearest) {
-            Some(0.0)
-        } else if counts && kept.farthest && records.is_kept(place.far, slab.farthest) {
-            Some(others)
-        } else {
-            None
-        };
-        if let Some(inside) = known {
-            return KnownFragment::known(before + inside);
+        if counts && kept.nearest && records.is_kept(place.near, slab.nearest) {
+            return KnownFragment::known(before);
+        }
+        if counts && kept.farthest && records.is_kept(place.far, slab.farthest) {
+            return KnownFragment::known(before + others);
         }
         let between = self.between(&place, slab, others);
         KnownFragment {

@@ -10,15 +10,21 @@ use peelnet_core::methods::{
     known::KnownFragment,
 };
 
-const OF_RESIDUAL: &str = "of the rest's absorbance";
-
 const MOMENT_BOUNDS: Shared = Shared {
     name: "bounds",
     wgsl: "peelnet_moment_bounds(rest)",
     module: Some("learned::moment_bounds"),
 };
 
-/// All features of the rest.
+const fn share(
+    name: &'static str,
+    wgsl: &'static str,
+    value: fn(&Residual) -> f64,
+) -> Feature<Residual> {
+    Feature::new(name, "of the rest's absorbance", wgsl, value).sharing(&MOMENT_BOUNDS)
+}
+
+/// All features of the rest. The first must be the root of its absorbance.
 pub static ANCHORED: [&Feature<Residual>; 5] = [
     &Feature::new(
         "root_absorbance",
@@ -38,28 +44,20 @@ pub static ANCHORED: [&Feature<Residual>; 5] = [
         "0.5 * rest.means.x + 0.5",
         |rest| (rest.means[0] + 1.0) / 2.0,
     ),
-    &Feature::<Residual>::new("share_low", OF_RESIDUAL, "bounds.x", |r| {
-        r.moment_bounds()[0]
-    })
-    .sharing(&MOMENT_BOUNDS),
-    &Feature::<Residual>::new("share_high", OF_RESIDUAL, "bounds.y", |r| {
-        r.moment_bounds()[1]
-    })
-    .sharing(&MOMENT_BOUNDS),
+    &share("share_low", "bounds.x", |rest| rest.moment_bounds()[0]),
+    &share("share_high", "bounds.y", |rest| rest.moment_bounds()[1]),
 ];
 
-/// The rest of a pixel. The first feature must be the root of its absorbance.
+/// The rest of a pixel.
 #[derive(Debug)]
 pub struct AnchoredInputs {
-    /// The features, in order.
-    pub features: &'static [&'static Feature<Residual>],
     /// Whether the nearest and the farthest fragment accumulate apart.
     pub separate_extremes: bool,
 }
 
 impl NetworkInputs for AnchoredInputs {
     fn features(&self) -> Vec<&'static About> {
-        about(self.features)
+        about(&ANCHORED)
     }
 
     fn surroundings(&self) -> &'static Surroundings {
@@ -72,10 +70,8 @@ impl NetworkInputs for AnchoredInputs {
 
     fn known(&self, pixel: &Observed<'_>) -> Vec<KnownFragment<Vec<f64>>> {
         let known = anchored::known_fragments(pixel.fragments, &pixel.warp, pixel.precision);
-        let known = known.into_iter();
-        known
-            .map(|f| f.map(|residual| values(self.features, residual)))
-            .collect()
+        let read = |f: KnownFragment<_>| f.map(|residual| values(&ANCHORED, residual));
+        known.into_iter().map(read).collect()
     }
 
     fn known_apart(&self) -> bool {
@@ -121,11 +117,11 @@ static SEPARATE_EXTREMES: Surroundings = Surroundings {
         pass(
             "weights",
             &["moments", "extent"],
-            Some(Value {
-                name: "f",
-                kind: ValueKind::Pair,
-                call: "peelnet_fragment(alpha, zeta, moments, extent)",
-            }),
+            value(
+                "f",
+                ValueKind::Pair,
+                "peelnet_fragment(alpha, zeta, moments, extent)",
+            ),
             &[sum("sums", HALF, INTERIOR), sum("ends", HALF, EXTREMES)],
         ),
     ],

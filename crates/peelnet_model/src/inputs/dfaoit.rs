@@ -33,14 +33,11 @@ pub static DFAOIT: [&Feature<Layers>; 10] = [
 
 /// The layers of a pixel.
 #[derive(Debug)]
-pub struct DfaoitInputs {
-    /// The features, in order.
-    pub features: &'static [&'static Feature<Layers>],
-}
+pub struct DfaoitInputs;
 
 impl NetworkInputs for DfaoitInputs {
     fn features(&self) -> Vec<&'static About> {
-        about(self.features)
+        about(&DFAOIT)
     }
 
     fn surroundings(&self) -> &'static Surroundings {
@@ -61,7 +58,7 @@ impl NetworkInputs for DfaoitInputs {
         let alphas = fragments.iter().map(|&(_, alpha)| alpha);
         let layers = Layers::from_fragments(alphas.zip(pixel.colors.iter().copied()));
         Examples::Rows(vec![RowExample {
-            inputs: values(self.features, &layers),
+            inputs: values(&DFAOIT, &layers),
             targets: exact.map(|c| c.min(1.0)).to_vec(),
             weight: 1.0,
         }])

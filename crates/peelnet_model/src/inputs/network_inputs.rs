@@ -48,10 +48,8 @@ pub trait NetworkInputs: Any + fmt::Debug + Sync {
 
     /// The colour of a pixel over black without the network, whose error says how hard the pixel is: drawn by MBOIT-4.
     fn baseline(&self, pixel: &PeeledPixel<'_>) -> [f64; 3] {
-        let Observed {
-            fragments, warp, ..
-        } = pixel.observed;
-        let t = moments::transmittances(fragments, &warp, &Settings::FOUR);
+        let fragments = pixel.observed.fragments;
+        let t = moments::transmittances(fragments, &pixel.observed.warp, &Settings::FOUR);
         let drawn = fragments.iter().zip(t);
         let drawn: Vec<f64> = drawn.map(|((_, alpha), t)| f64::from(*alpha) * t).collect();
         let scale = (1.0 - pixel.transmittance_behind()) / drawn.iter().sum::<f64>().max(1e-12);
@@ -109,11 +107,8 @@ pub struct PeeledPixel<'a> {
 impl PeeledPixel<'_> {
     /// `T_∞`.
     pub fn transmittance_behind(&self) -> f64 {
-        let last = self
-            .observed
-            .fragments
-            .last()
-            .zip(self.transmittance.last());
+        let mut fragments = self.observed.fragments.iter().zip(self.transmittance);
+        let last = fragments.next_back();
         last.map_or(1.0, |((_, alpha), t)| {
             f64::from(*t) * f64::from(1.0 - alpha)
         })

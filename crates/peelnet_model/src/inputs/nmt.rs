@@ -11,12 +11,8 @@ pub static NMT: [&Feature<FragmentMoments>; 7] = [
         "peelnet_depth(zeta, extent)",
         FragmentMoments::depth,
     ),
-    &Feature::new("fragment_count", "1", "totals.y", |fragment| {
-        fragment.count as f64
-    }),
-    &Feature::new("absorbance", "1", "totals.x", |fragment| {
-        fragment.moments[0]
-    }),
+    &Feature::new("fragment_count", "1", "totals.y", |f| f.count as f64),
+    &Feature::new("absorbance", "1", "totals.x", |f| f.moments[0]),
     &Feature::new("moment_1", "1", "moments.x", |f| f.moments[1]),
     &Feature::new("moment_2", "1", "moments.y", |f| f.moments[2]),
     &Feature::new("moment_3", "1", "moments.z", |f| f.moments[3]),
@@ -25,14 +21,11 @@ pub static NMT: [&Feature<FragmentMoments>; 7] = [
 
 /// The moments of a pixel and a depth.
 #[derive(Debug)]
-pub struct NmtInputs {
-    /// The features, in order.
-    pub features: &'static [&'static Feature<FragmentMoments>],
-}
+pub struct NmtInputs;
 
 impl NetworkInputs for NmtInputs {
     fn features(&self) -> Vec<&'static About> {
-        about(self.features)
+        about(&NMT)
     }
 
     fn surroundings(&self) -> &'static Surroundings {
@@ -41,8 +34,8 @@ impl NetworkInputs for NmtInputs {
 
     fn transmittances(&self, pixel: &Observed<'_>, network: Forward<'_>) -> Vec<f64> {
         let all = FragmentMoments::all(pixel.fragments, &pixel.warp).into_iter();
-        all.map(|fragment| network(&values(self.features, &fragment)))
-            .collect()
+        let inputs = all.map(|fragment| values(&NMT, &fragment));
+        inputs.map(|inputs| network(&inputs)).collect()
     }
 
     fn examples(&self, pixel: &PeeledPixel<'_>) -> Examples {
@@ -50,7 +43,7 @@ impl NetworkInputs for NmtInputs {
         let all = FragmentMoments::all(fragments, &pixel.observed.warp).into_iter();
         let rows = all.zip(fragments).zip(pixel.transmittance);
         let rows = rows.map(|((fragment, &(_, alpha)), &t)| RowExample {
-            inputs: values(self.features, &fragment),
+            inputs: values(&NMT, &fragment),
             targets: vec![t.into()],
             // An error of T is fragment as much as the fragment is opaque.
             weight: alpha * alpha,
@@ -102,9 +95,8 @@ mod tests {
     /// Of a range 1 … e², ζ = ln z − 1.
     fn inputs(points: &[(f32, f32)]) -> Vec<[f64; 7]> {
         let warp = DepthWarp::new(1.0, 2f64.exp());
-        let all = FragmentMoments::all(points, &warp);
-        all.iter()
-            .map(|fragment| NMT.map(|f| (f.value)(fragment)))
+        let all = FragmentMoments::all(points, &warp).into_iter();
+        all.map(|fragment| NMT.map(|f| (f.value)(&fragment)))
             .collect()
     }
 
@@ -122,18 +114,8 @@ mod tests {
         let (a, b) = (0.5f32.exp(), 2f32.exp());
         let middle = 1.5f32.exp();
         let ln2 = 2f64.ln();
-        let rest = [
-            3.0,
-            3.0 * ln2,
-            (-0.5 + 2.0) * ln2,
-            (0.25 + 2.0) * ln2,
-            (-0.125 + 2.0) * ln2,
-            (0.0625 + 2.0) * ln2,
-        ];
-        let with = |depth: f64| {
-            let [n, b0, b1, b2, b3, b4] = rest;
-            [depth, n, b0, b1, b2, b3, b4]
-        };
+        let [b1, b2, b3, b4] = [-0.5, 0.25, -0.125, 0.0625].map(|power| (power + 2.0) * ln2);
+        let with = |depth: f64| [depth, 3.0, 3.0 * ln2, b1, b2, b3, b4];
         let got = inputs(&[(b, 0.75), (middle, 0.0), (a, 0.5)]);
         close(got[0], with(1.0));
         close(got[1], with((0.5f64.exp() - 1.0) / (0.75f64.exp() - 1.0)));

@@ -18,6 +18,10 @@ const OF_DEPTH: &str = "of the depth between the slab's ends";
 
 const OF_ABSORBANCE: &str = "of the absorbance between the slab's ends";
 
+const ROOT_OWN: &str = "root of the fragment's absorbance";
+
+const IN_SLABS: &str = "half of the depth between the slab's ends, in slabs";
+
 /// How much lies between a slab's ends, where the fragment lies, what is known of the share in front, how far apart the ends are, and how
 /// the absorbances compare.
 pub static NINE: [&Feature<Interior>; 9] = [
@@ -31,18 +35,8 @@ pub static NINE: [&Feature<Interior>; 9] = [
     &Feature::new("mean_fraction", OF_DEPTH, "between.mean", |b| b.mean),
     &Feature::new("share_low", OF_ABSORBANCE, "between.low", |b| b.bounds[0]),
     &Feature::new("share_high", OF_ABSORBANCE, "between.high", |b| b.bounds[1]),
-    &Feature::new(
-        "root_own",
-        "root of the fragment's absorbance",
-        "sqrt(between.own)",
-        |between| between.own.sqrt(),
-    ),
-    &Feature::new(
-        "half_extent",
-        "half of the depth between the slab's ends, in slabs",
-        "between.extent",
-        |between| between.extent,
-    ),
+    &Feature::new("root_own", ROOT_OWN, "sqrt(between.own)", |b| b.own.sqrt()),
+    &Feature::new("half_extent", IN_SLABS, "between.extent", |b| b.extent),
     &Feature::new(
         "of_own",
         "absorbance between the ends, of that and the fragment's",
@@ -91,10 +85,8 @@ impl NetworkInputs for SlabInputs {
     fn known(&self, pixel: &Observed<'_>) -> Vec<KnownFragment<Vec<f64>>> {
         let (warp, design) = (&pixel.warp, self.design);
         let known = slabs::known_fragments(pixel.fragments, warp, design, pixel.precision);
-        let known = known.into_iter();
-        known
-            .map(|f| f.map(|interior| values(self.features, interior)))
-            .collect()
+        let read = |f: KnownFragment<_>| f.map(|interior| values(self.features, interior));
+        known.into_iter().map(read).collect()
     }
 
     fn known_apart(&self) -> bool {
@@ -116,14 +108,10 @@ impl NetworkInputs for SlabInputs {
         let slabs = Slabs::gather(&points, self.design, pixel.precision);
         let [mut a, mut firsts, mut near, mut far] = [const { Vec::new() }; 4];
         for slab in slabs.stored() {
-            for (values, value) in [&mut a, &mut firsts, &mut near, &mut far]
-                .into_iter()
-                .zip(slab)
-            {
-                values.push(value as f32);
-            }
+            let all = [&mut a, &mut firsts, &mut near, &mut far].into_iter();
+            all.zip(slab).for_each(|(all, x)| all.push(x as f32));
         }
-        let range = slabs.range().stored().map(|x| x as f32).to_vec();
+        let range = slabs.range.stored().map(|x| x as f32).to_vec();
         let mut targets = vec![("range", range)];
         match self.layout() {
             Layout::Small => {
@@ -132,9 +120,8 @@ impl NetworkInputs for SlabInputs {
                 targets.extend([("absorbances", a), ("nearest", near), ("firsts", firsts)]);
             }
             Layout::Medium => {
-                for (values, first) in [&mut a, &mut near, &mut far].into_iter().zip(firsts) {
-                    values.push(first);
-                }
+                let all = [&mut a, &mut near, &mut far].into_iter();
+                all.zip(firsts).for_each(|(all, first)| all.push(first));
                 targets.extend([("absorbances", a), ("nearest", near), ("farthest", far)]);
             }
             Layout::Large => targets.extend([
@@ -150,11 +137,7 @@ impl NetworkInputs for SlabInputs {
 
 /// What surrounds a network, or any guess between the ends of slabs, in a layout.
 pub const fn slab_surroundings(layout: Layout) -> &'static Surroundings {
-    match layout {
-        Layout::Small => &SMALL,
-        Layout::Medium => &MEDIUM,
-        Layout::Large => &LARGE,
-    }
+    [&SMALL, &MEDIUM, &LARGE][layout as usize]
 }
 
 const fn modules(statistics: &'static str) -> [&'static str; 7] {

@@ -16,14 +16,11 @@ pub static THESIS: [&Feature<deep::Row>; 3] = [
 
 /// Columns of a dataset.
 #[derive(Debug)]
-pub struct ThesisInputs {
-    /// The features, in order.
-    pub features: &'static [&'static Feature<deep::Row>],
-}
+pub struct ThesisInputs;
 
 impl NetworkInputs for ThesisInputs {
     fn features(&self) -> Vec<&'static About> {
-        about(self.features)
+        about(&THESIS)
     }
 
     fn surroundings(&self) -> &'static Surroundings {
@@ -38,9 +35,8 @@ impl NetworkInputs for ThesisInputs {
             alpha_sum,
             fragment_count: pixel.fragments.len() as f32,
         };
-        fragments
-            .map(|f| network(&values(self.features, &row(f))))
-            .collect()
+        let inputs = fragments.map(|f| values(&THESIS, &row(f)));
+        inputs.map(|inputs| network(&inputs)).collect()
     }
 
     fn examples(&self, pixel: &PeeledPixel<'_>) -> Examples {
@@ -52,7 +48,7 @@ impl NetworkInputs for ThesisInputs {
         };
         let rows = pixel.observed.fragments.iter().enumerate().map(row);
         let rows = rows.zip(pixel.transmittance).map(|(row, &t)| RowExample {
-            inputs: values(self.features, &row),
+            inputs: values(&THESIS, &row),
             targets: vec![t.into()],
             weight: 1.0,
         });

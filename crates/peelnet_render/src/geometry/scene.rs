@@ -271,9 +271,9 @@ impl SceneBuffers {
             sample_view: sample.view,
             sample_threshold: sample.threshold,
             unit_from_depth: unit_from_depth(camera.far),
-            warp_inverse_near: (-warp.near().ln()).exp() as f32,
-            warp_near: warp.near() as f32,
-            warp_scale: warp.scale() as f32,
+            warp_inverse_near: (-warp.near.ln()).exp() as f32,
+            warp_near: warp.near as f32,
+            warp_scale: warp.scale as f32,
             window_depth_at_infinity: camera.far / (camera.far - camera.near),
             pad: [0; 2],
         };

@@ -107,15 +107,11 @@ fn chart<'a>(ui: &mut Ui, points: &'a [Point], own: &str) -> Option<&'a str> {
         return None;
     }
     painter.circle_stroke(place(point), 6.0, Stroke::new(1.0, text));
-    let about = format!(
-        "{}\n{} ms, MSE {}, {:.0} bytes a pixel",
-        point.method,
-        digits(point.time_ms),
-        digits(point.mse255),
-        point.bytes_per_pixel
-    );
+    let (ms, mse) = (digits(point.time_ms), digits(point.mse255));
+    let (method, bytes) = (&point.method, point.bytes_per_pixel);
+    let about = format!("{method}\n{ms} ms, MSE {mse}, {bytes:.0} bytes a pixel");
     let response = response.on_hover_text(about);
-    response.clicked().then_some(&point.method)
+    response.clicked().then_some(method)
 }
 
 fn list<'a>(ui: &mut Ui, points: &'a [Point], own: &str) -> Option<&'a str> {

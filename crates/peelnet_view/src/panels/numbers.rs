@@ -82,27 +82,23 @@ pub(super) fn passes(app: &mut App, ui: &mut Ui) {
     for (name, micros, n) in times {
         // Some are named after their shader: methods::slabs::resolve.
         let name = name.rsplit("::").next().unwrap_or(name);
-        let times = if n > 1 {
-            format!(" ×{n}")
-        } else {
-            String::new()
-        };
-        let ms = format!("{:.3} ms", micros / 1e3);
-        rows.push((format!("{name}{times}"), ms, ""));
+        let mut name = name.to_owned();
+        if n > 1 {
+            name += &format!(" ×{n}");
+        }
+        rows.push((name, format!("{:.3} ms", micros / 1e3), ""));
     }
     let gpu = slot.gpu_ms().map(|ms| format!("{ms:.3} ms"));
     let stats = slot.stats();
     let (geometry, screen) = (stats.geometry_passes, stats.fullscreen_passes);
+    let bytes = stats.bytes_per_pixel;
     let [w, h] = app.size;
     let frame = [
         ("frame on the GPU", gpu.unwrap_or("no timestamps".into())),
         ("frame on the CPU", format!("{:.2} ms", app.cpu_ms)),
         ("made ready in", format!("{:.0} ms", slot.ready_ms)),
         ("passes", format!("{geometry} geometry, {screen} screen")),
-        (
-            "memory",
-            format!("{:.0} bytes a pixel", stats.bytes_per_pixel),
-        ),
+        ("memory", format!("{bytes:.0} bytes a pixel")),
         ("picture", format!("{w} × {h}")),
     ];
     rows.extend(frame.map(|(name, value)| (name.to_owned(), value, "")));

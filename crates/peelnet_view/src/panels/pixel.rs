@@ -8,18 +8,16 @@ use peelnet_core::srgb::encode8;
 /// Fragments that are listed; the rest is counted.
 const MOST: usize = 64;
 
+const EXACT: &str = "Exact transmittance in front of it, the share of it that is seen";
+const BELIEVED: &str =
+    "What the method takes it to be; – where its weights stand for no transmittance";
+
 const HEADS: [(&str, &str); 6] = [
     ("", "Colour"),
     ("depth", "Linear depth, scene units"),
     ("alpha", "Opacity"),
-    (
-        "T",
-        "Exact transmittance in front of it, the share of it that is seen",
-    ),
-    (
-        "T method",
-        "What the method takes it to be; – where its weights stand for no transmittance",
-    ),
+    ("T", EXACT),
+    ("T method", BELIEVED),
     ("object", "Whose surface it is"),
 ];
 

@@ -13,9 +13,8 @@ const INCREASING: &str =
     "Leaves out surfaces whose layer is not deeper than the one in front of them";
 
 pub(super) fn camera(app: &mut App, ui: &mut Ui) {
-    let Some(views) = app.stage.as_ref().map(|s| s.scene.views.len()) else {
-        return;
-    };
+    let Some(stage) = &app.stage else { return };
+    let views = stage.scene.views.len();
     ui.horizontal_wrapped(|ui| {
         for number in 0..views {
             let is_own = app.view == Some(number);
@@ -139,7 +138,6 @@ pub(super) fn objects(app: &mut App, ui: &mut Ui) {
     }
 }
 
-/// Three numbers in a row; whether one changed.
 fn vector(ui: &mut Ui, name: &str, x: &mut Vec3, speed: f32) -> bool {
     let label = ui.label(name);
     let mut changed = false;
@@ -310,10 +308,8 @@ pub(super) fn timeline(app: &mut App, ui: &mut Ui) {
         let name = if app.panels.plays { "Pause" } else { "Play" };
         app.panels.plays ^= ui.button(name).clicked();
         ui.spacing_mut().slider_width = (ui.available_width() - 260.0).max(80.0);
-        if ui
-            .add(Slider::new(&mut time, from..=to).text("Time"))
-            .changed()
-        {
+        let slider = Slider::new(&mut time, from..=to).text("Time");
+        if ui.add(slider).changed() {
             app.panels.plays = false;
             chosen = Some(time);
         }

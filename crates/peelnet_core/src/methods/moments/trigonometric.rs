@@ -54,14 +54,11 @@ pub(super) fn bounds(means: [f64; 9], count: usize, bias: f64, zeta: f64) -> (f6
     let back = Complex64::cis(-phi);
     let mut turn = Complex64::ONE;
     // Around the asked depth at angle 0.
-    let turned: Vec<_> = means[1..=2 * count]
-        .chunks_exact(2)
-        .map(|m| {
-            turn *= back;
-            Complex64::new(m[0], m[1]) * turn * (1.0 - bias)
-        })
-        .collect();
-    let (own, others) = measure(&turned);
+    let turned = means[1..=2 * count].chunks_exact(2).map(|m| {
+        turn *= back;
+        Complex64::new(m[0], m[1]) * turn * (1.0 - bias)
+    });
+    let (own, others) = measure(&turned.collect::<Vec<_>>());
     let in_front = others.map(|(x, mass)| mass * front(x, phi));
     let low = in_front.iter().take(count).sum();
     (low, low + own)

@@ -1,19 +1,16 @@
 use super::*;
 use crate::{absorbance::absorbance, fragment::points as points_of, methods::over, random::Random};
+use std::collections::BTreeSet;
 
 const C0: [f32; 3] = [0.3, 0.1, 0.7];
 
 /// A pixel's fragments at these places in the range of the view's depths.
 fn at(places: &[f64], most: f32, random: &mut Random) -> Vec<Fragment> {
-    let mut fragments: Vec<_> = places
-        .iter()
-        .map(|t| {
-            let depth = (0.5 * 100f64.powf(*t)) as f32;
-            Fragment::new(depth, random.between(0.02, most), random.color())
-        })
-        .collect();
-    crate::fragment::sort_front_to_back(&mut fragments);
-    fragments
+    let layers = places.iter().map(|t| {
+        let depth = (0.5 * 100f64.powf(*t)) as f32;
+        Fragment::new(depth, random.between(0.02, most), random.color())
+    });
+    over::sorted(&layers.collect::<Vec<_>>())
 }
 
 fn warp() -> DepthWarp {
@@ -23,9 +20,8 @@ fn warp() -> DepthWarp {
 fn worst(f: &[Fragment], design: Design, guess: f64) -> f32 {
     let exact = over::composite(f, C0);
     let got = composite(f, C0, &warp(), design, |_| guess);
-    (0..3)
-        .map(|k| (got[k] - exact[k]).abs())
-        .fold(0.0, f32::max)
+    let errors = (0..3).map(|k| (got[k] - exact[k]).abs());
+    errors.fold(0.0, f32::max)
 }
 
 /// Two layers in each slab: all are known, whatever is guessed.
@@ -53,14 +49,11 @@ fn two_layers_of_each_slab_are_known() {
 #[test]
 fn layouts_are_found() {
     for layout in Layout::ALL {
-        let extent = Extent::Frame;
-        let framed = Design {
-            extent,
-            ..layout.design()
-        };
-        assert_eq!(framed.layout(), Some(layout));
-        let apart = true;
-        assert_eq!(Design { apart, ..framed }.layout(), None);
+        let mut design = layout.design();
+        design.extent = Extent::Frame;
+        assert_eq!(design.layout(), Some(layout));
+        design.apart = true;
+        assert_eq!(design.layout(), None);
     }
     assert_eq!(Layout::ALL.map(|l| l.design().bytes()), [30, 34, 42]);
 }
@@ -92,10 +85,8 @@ fn depths_that_are_rounded_otherwise_are_known_still() {
             }
         }
     }
-    assert!(
-        known > 2000 && in_other_bins > 50,
-        "{known}, {in_other_bins}"
-    );
+    let is_enough = known > 2000 && in_other_bins > 50;
+    assert!(is_enough, "{known}, {in_other_bins}");
 }
 
 /// The truth lies between the bounds, but for what 32 levels of opacity round away of the slab's two ends. Half a level is
@@ -109,11 +100,8 @@ fn bounds_hold() {
     let (mut guessed, mut width, mut unbounded) = (0, 0.0, 0.0);
     for _ in 0..300 {
         // In 2,000 places, which lie in bins of their own.
-        let mut cells: Vec<_> = (0..random.below(8) + 12)
-            .map(|_| random.below(2000))
-            .collect();
-        cells.sort_unstable();
-        cells.dedup();
+        let count = random.below(8) + 12;
+        let cells: BTreeSet<_> = (0..count).map(|_| random.below(2000)).collect();
         let places: Vec<_> = cells.iter().map(|&c| c as f64 / 1999.0).collect();
         let f = at(&places, MOST, &mut random);
         let list = points_of(&f);

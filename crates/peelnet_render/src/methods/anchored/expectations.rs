@@ -2,7 +2,7 @@
 
 use crate::methods::{expected::*, learned::learned_transmittances};
 use peelnet_core::methods::anchored;
-use peelnet_model::inputs::AnchoredInputs;
+use peelnet_model::inputs::{ANCHORED as FEATURES, AnchoredInputs};
 
 pub(super) const ANCHORED: Expectations = Expectations {
     guarantees: |_| Guarantees {
@@ -15,7 +15,7 @@ pub(super) const ANCHORED: Expectations = Expectations {
         let inputs = model.meta.recipe.inputs.downcast::<AnchoredInputs>()?;
         let (fragments, c0) = (p.fragments, p.background);
         let (apart, share) = (inputs.separate_extremes, |rest: &_| {
-            model.answer(inputs.features, rest)
+            model.answer(&FEATURES, rest)
         });
         Some(anchored::composite(fragments, c0, &p.warp, apart, share))
     }),

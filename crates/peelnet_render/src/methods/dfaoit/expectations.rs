@@ -2,7 +2,7 @@
 
 use crate::methods::{depth_peel::expectations::COINCIDENT, expected::*};
 use peelnet_core::methods::dfaoit;
-use peelnet_model::inputs::DfaoitInputs;
+use peelnet_model::inputs::{DFAOIT, DfaoitInputs};
 
 pub(super) const METHOD: Expectations = Expectations {
     // The colour is the network's, not a mean.
@@ -12,9 +12,9 @@ pub(super) const METHOD: Expectations = Expectations {
     },
     reference: Some(|_, p| {
         let model = p.model?;
-        let inputs = model.meta.recipe.inputs.downcast::<DfaoitInputs>()?;
+        model.meta.recipe.inputs.downcast::<DfaoitInputs>()?;
         let network = |known: &dfaoit::Layers| {
-            let color = model.answers(inputs.features, known);
+            let color = model.answers(&DFAOIT, known);
             [0, 1, 2].map(|k| color[k] as f32)
         };
         Some(dfaoit::composite(p.fragments, p.background, network))
