@@ -98,17 +98,8 @@ enum Resource {
         frame: u64,
         cleared: bool,
     },
-    Given(&'static str, Given),
-    /// Where the finished picture goes, blended as that is; there is no resolve then.
-    Output,
-}
-
-/// A resource that something else allocates.
-#[derive(Clone, Debug)]
-pub(crate) enum Given {
-    Texture(wgpu::TextureView),
-    Storage(wgpu::Buffer),
-    Uniform(wgpu::Buffer),
+    /// What something else allocates.
+    Given(&'static str, Allocated),
 }
 
 /// A resource of [`Passes`].
@@ -232,13 +223,13 @@ impl<'a> Passes<'a> {
     }
 
     /// A resource that something else allocates.
-    pub fn given(&mut self, name: &'static str, given: Given) -> Handle {
+    pub fn given(&mut self, name: &'static str, given: Allocated) -> Handle {
         self.resource(Resource::Given(name, given))
     }
 
     /// Where the finished picture goes.
     pub fn output(&mut self) -> Handle {
-        self.resource(Resource::Output)
+        self.given("output", Allocated::Output)
     }
 
     /// A target, of 16 or 32 bits as the method's `targets` says.
@@ -428,7 +419,7 @@ impl<'a> Passes<'a> {
                     colors.push(Some((view.clone(), target.blend.start())));
                     states.push(Some(target.state()));
                 }
-                (Resource::Output, _) => {
+                (_, Allocated::Output) => {
                     colors.push(None);
                     states.push(Some(output.state()));
                     samples = output.samples();
@@ -478,11 +469,12 @@ impl<'a> Passes<'a> {
 }
 
 /// A resource of a frame.
-#[derive(Debug)]
-enum Allocated {
+#[derive(Clone, Debug)]
+pub(crate) enum Allocated {
     Texture(wgpu::TextureView),
     Storage(wgpu::Buffer),
     Uniform(wgpu::Buffer),
+    /// Where the finished picture goes, blended as that is; there is no resolve then.
     Output,
 }
 
@@ -500,7 +492,6 @@ impl Resource {
             Self::Target(Target { name, .. })
             | Self::Storage { name, .. }
             | Self::Given(name, _) => name,
-            Self::Output => "output",
         }
     }
 
@@ -531,10 +522,7 @@ impl Resource {
                 }
                 Allocated::Storage(buffer)
             }
-            Self::Given(_, Given::Texture(view)) => Allocated::Texture(view.clone()),
-            Self::Given(_, Given::Storage(buffer)) => Allocated::Storage(buffer.clone()),
-            Self::Given(_, Given::Uniform(buffer)) => Allocated::Uniform(buffer.clone()),
-            Self::Output => Allocated::Output,
+            Self::Given(_, given) => given.clone(),
         })
     }
 }
