@@ -8,7 +8,7 @@ use peelnet_core::{
 };
 use peelnet_render::{
     Image, MethodOptions, MethodSpec, Renderer,
-    geometry::{dual::DualPeel, frame::Output, needs::compare_needs, single::SinglePeel},
+    geometry::{depth_peel::DepthPeel, frame::Output, needs::compare_needs},
 };
 use peelnet_scene::Material;
 use peelnet_tests::{
@@ -50,7 +50,7 @@ fn a_silhouette_in_smoke_is_exact() {
 fn passes_say_what_they_read() {
     let gpu = gpu();
     let scene = walls(&worked_example(), [0.1, 0.2, 0.3]);
-    let compared = compare_needs(|| {
+    let (faults, passes) = compare_needs(|| {
         let renderer = Renderer::new(&gpu, &scene).unwrap();
         for spec in MethodSpec::curve() {
             let learned = network_of(&spec).map(|(learned, _)| learned);
@@ -63,10 +63,9 @@ fn passes_say_what_they_read() {
         let mut surfaces = renderer.surfaces([4, 4], 1).unwrap();
         renderer.image(&mut surfaces, &scene.views[0]).unwrap();
         let frame = renderer.targets([4, 4], Output::Image, None).unwrap();
-        SinglePeel::new(&renderer, &frame, &["dataset"]).unwrap();
-        DualPeel::new(&renderer, &frame, &["dataset"], None).unwrap();
+        DepthPeel::single(&renderer, &frame, &["dataset"]).unwrap();
+        DepthPeel::dual(&renderer, &frame, &["dataset"], None).unwrap();
     });
-    let (faults, passes) = compared.unwrap();
     assert!(faults.is_empty(), "{faults:#?}");
     assert!(passes > 100, "{passes}");
 }

@@ -14,11 +14,7 @@ use crate::RenderError;
 use crate::geometry::{
     Blend, BoxPass, GeometryPass, Needs, Order, Sorted, frame::unwritten_texture,
 };
-use crate::gpu::{
-    Kernel,
-    bind::{Bind, numbered},
-    wgpu,
-};
+use crate::gpu::{Kernel, bind::Bind, wgpu};
 use crate::methods::{MethodSpec, Precision};
 use compositor::{Build, Compositor, resolve};
 use peelnet_model::Recipe;
@@ -115,16 +111,6 @@ enum Draws {
     Threads(u64),
     /// Finished pixels.
     Pixels,
-}
-
-impl Draws {
-    /// The bind group of what a pass reads and of the storage that it writes; a geometry pass has the scene in group 0.
-    const fn group(self) -> u32 {
-        match self {
-            Self::Surfaces | Self::Boxes => 1,
-            Self::Threads(_) | Self::Pixels => 0,
-        }
-    }
 }
 
 /// One pass: its shader, what it reads and what it writes, targets in the order of the shader's locations. A compute shader may read the
@@ -432,10 +418,8 @@ impl<'a> Passes<'a> {
         }
         let work = match pass.draws {
             Draws::Threads(threads) => {
-                let shader = crate::shaders::link(shader, &features, &modules)?;
-                let threads = u32::try_from(threads).unwrap_or(u32::MAX);
-                let entries = numbered(&shader, pass.draws.group(), &entries)?;
-                Work::Threads(Kernel::new(gpu, &shader, &entries), threads)
+                let kernel = Kernel::link(gpu, shader, &features, &modules, &entries)?;
+                Work::Threads(kernel, u32::try_from(threads).unwrap_or(u32::MAX))
             }
             Draws::Pixels => {
                 let pass = resolve(gpu, b.frame, shader, &features, &modules, &entries);

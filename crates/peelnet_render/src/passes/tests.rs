@@ -3,7 +3,7 @@
 use super::*;
 use crate::{
     methods::METHODS,
-    shaders::{PORTABLE, link, naga, source, validate},
+    shaders::{Binding, PORTABLE, link, naga, source, validate},
     target::LearnedWeight,
 };
 use std::collections::BTreeSet;
@@ -60,9 +60,15 @@ fn compare(list: &Passes<'_>, pass: &Pass) -> Option<String> {
         features.extend(pass.needs.features(&[]));
     }
     let shader = link(&pass.shader, &features, &list.modules(pass)).expect("links");
-    let is_own = |b: &&(u32, u32, String)| b.0 == pass.draws.group();
+    // A geometry pass has the scene in group 0.
+    let group = u32::from(matches!(pass.draws, Draws::Surfaces | Draws::Boxes));
+    let is_own = |b: &&Binding| b.group == group;
     let always = |name: &&str| !["background", "frame"].contains(name);
-    let variables = shader.bindings.iter().filter(is_own).map(|b| b.2.as_str());
+    let variables = shader
+        .bindings
+        .iter()
+        .filter(is_own)
+        .map(|b| b.name.as_str());
     let variables: BTreeSet<_> = variables.filter(always).collect();
     let resource = |handle: &Handle| &list.resources[handle.0];
     let is_target = |r: &&Resource| matches!(r, Resource::Target(_)) || r.name() == "output";
