@@ -5,7 +5,7 @@ use peelnet_dataset::{FragmentBatch, Part, PeeledFragment};
 
 /// What was noticed on the way.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct RowCounts {
+pub(crate) struct RowCounts {
     /// Rows written.
     pub rows: u64,
     /// Slots that peeling left empty: fragments lost.
@@ -15,11 +15,8 @@ pub struct RowCounts {
 }
 
 /// Makes the rows of a part's tile in `batch`, which is empty, and calls `flush` whenever it holds `chunk` rows or more (pixels stay
-/// whole) and once at the end.
-///
-/// # Errors
-/// What `flush` returns, and rows out of order, which the GPU should have sorted.
-pub fn make_rows(
+/// whole) and once at the end. Rows out of order, which the GPU should have sorted, are an error.
+pub(crate) fn make_rows(
     tile: &RawTile,
     part: &Part,
     batch: &mut FragmentBatch,
