@@ -82,7 +82,8 @@ impl TrainingData {
             config.recipe,
             &mut data,
             plan.views,
-            &mut Sample::all(),
+            // All rows.
+            &mut Sample::new(0, u64::MAX, 0),
             |view, rows, data| {
                 if stop.load(Ordering::Relaxed) {
                     return Err(TrainError::Stopped);

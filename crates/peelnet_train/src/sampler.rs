@@ -254,17 +254,15 @@ mod tests {
                 // All examples in order, and those of the first window.
                 let pass = |subset, epoch| {
                     let (mut all, mut first, mut is_whole) = (Vec::new(), BTreeSet::new(), true);
-                    let number = &mut 0;
                     windows(&scratch, &config, (subset, epoch), |buffer, order| {
                         assert!(is_whole, "only the last window has a part of a batch");
                         is_whole = subset != Subset::Train || order.len().is_multiple_of(batch);
                         let room = most as usize + 2 * BLOCK_ROWS + 24 * batch;
                         assert!(buffer.rows_held() <= room);
                         all.extend(order.iter().map(|&e| id(buffer, e)));
-                        if *number == 0 {
+                        if first.is_empty() {
                             first.extend(all.iter().copied());
                         }
-                        *number += 1;
                         Ok(())
                     })
                     .unwrap();
