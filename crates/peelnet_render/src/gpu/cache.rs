@@ -1,5 +1,6 @@
 //! Compiled pipelines, kept by all that decides them: a resize, a second scene or a second method compiles none anew.
 
+use crate::shaders::ShaderId;
 use std::{collections::HashMap, sync::Mutex};
 
 /// Entries of a bind group's layout.
@@ -7,8 +8,18 @@ pub type Layout = Vec<wgpu::BindGroupLayoutEntry>;
 
 #[derive(Debug, Default)]
 pub(crate) struct PipelineCache {
-    /// By the text of all that decides them, which takes no time beside compiling.
-    pub render: Mutex<HashMap<String, wgpu::RenderPipeline>>,
-    /// By the shader's number.
-    pub compute: Mutex<HashMap<(u32, Layout), wgpu::ComputePipeline>>,
+    pub render: Mutex<HashMap<RenderKey, wgpu::RenderPipeline>>,
+    pub compute: Mutex<HashMap<(ShaderId, Layout), wgpu::ComputePipeline>>,
+}
+
+/// All that decides a render pipeline.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct RenderKey {
+    pub shaders: [ShaderId; 2],
+    pub layouts: Vec<Option<Layout>>,
+    pub buffers: Vec<Option<(u64, wgpu::VertexStepMode, Vec<wgpu::VertexAttribute>)>>,
+    pub targets: Vec<Option<wgpu::ColorTargetState>>,
+    pub depth: Option<wgpu::DepthStencilState>,
+    pub samples: u32,
+    pub culled: Option<wgpu::Face>,
 }

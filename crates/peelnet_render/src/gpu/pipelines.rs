@@ -3,6 +3,7 @@
 use crate::gpu::{
     Gpu,
     bind::{Bind, Bound, numbered},
+    cache::RenderKey,
     locked,
     record::Recorder,
 };
@@ -96,16 +97,20 @@ pub struct RenderPipeline<'a> {
 impl Gpu {
     /// A render pipeline, made where there is none that equals it yet.
     pub fn render_pipeline(&self, made_of: &RenderPipeline<'_>) -> wgpu::RenderPipeline {
-        let groups = made_of.groups.iter();
-        let layouts: Vec<_> = groups.map(|g| g.map(|g| &g.entries)).collect();
-        let key = format!(
-            "{:?}",
-            (
-                [made_of.vertex.id, made_of.fragment.id],
-                (layouts, made_of.buffers, made_of.targets),
-                (&made_of.depth, made_of.samples, made_of.culled),
-            )
-        );
+        let layouts = made_of.groups.iter();
+        let buffers = made_of.buffers.iter().map(|b| {
+            let b = b.as_ref()?;
+            Some((b.array_stride, b.step_mode, b.attributes.to_vec()))
+        });
+        let key = RenderKey {
+            shaders: [made_of.vertex.id, made_of.fragment.id],
+            layouts: layouts.map(|g| g.map(|g| g.entries.clone())).collect(),
+            buffers: buffers.collect(),
+            targets: made_of.targets.to_vec(),
+            depth: made_of.depth.clone(),
+            samples: made_of.samples,
+            culled: made_of.culled,
+        };
         // Compiling takes long: the lock is not held meanwhile, and the first of two equal pipelines stays.
         if let Some(known) = locked(&self.shared.pipelines.render).get(&key) {
             return known.clone();

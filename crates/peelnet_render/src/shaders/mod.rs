@@ -58,11 +58,15 @@ pub fn with_altered<T>(path: &str, text: &str, work: impl FnOnce() -> T) -> T {
     done
 }
 
+/// A shader's number in this process: equal for equal modules, features and texts, so that it stands for the text in keys.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct ShaderId(u32);
+
 /// A linked shader.
 #[derive(Debug)]
 pub struct Shader {
-    /// Its number in this process: equal for equal modules, features and texts, so that it stands for the text in keys.
-    pub id: u32,
+    /// See [`ShaderId`].
+    pub id: ShaderId,
     /// The root module.
     pub name: String,
     /// Plain WGSL.
@@ -84,6 +88,16 @@ pub struct Binding {
     pub space: String,
 }
 
+/// All that decides a linked shader's text.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+struct ShaderKey {
+    root: String,
+    /// In alphabetical order.
+    features: BTreeSet<String>,
+    /// Paths and texts of modules that are not in the repository; of equal paths, the last counts.
+    modules: Vec<(String, String)>,
+}
+
 /// Links `root` (a path such as `methods::wboit::gather`) with the given features on and extra modules in place.
 ///
 /// Linking is deterministic, so its results are kept for the life of the process.
@@ -95,56 +109,56 @@ pub fn link(
     features: &[&str],
     extra: &[(&str, &str)],
 ) -> Result<Arc<Shader>, ShaderError> {
-    let altered = ALTERED.with_borrow(Clone::clone);
-    let altered = altered
-        .iter()
-        .map(|(path, text)| (path.as_str(), text.as_str()));
-    // Of equal paths, the last counts.
-    let modules: Vec<_> = altered.chain(extra.iter().copied()).collect();
-    // In alphabetical order.
-    let features: BTreeSet<_> = features.iter().copied().collect();
-    let key = format!("{root} {features:?} {modules:?}");
-    interned(root, key, || link_uncached(root, &features, &modules))
+    let altered = ALTERED.with_borrow(Clone::clone).into_iter();
+    let owned = |&(path, text): &(&str, &str)| (path.to_owned(), text.to_owned());
+    let key = ShaderKey {
+        root: root.to_owned(),
+        features: features.iter().map(|&f| f.to_owned()).collect(),
+        modules: altered.chain(extra.iter().map(owned)).collect(),
+    };
+    interned(key, link_uncached)
 }
 
 /// A shader whose text is complete.
 pub fn plain(name: &str, text: &str) -> Arc<Shader> {
-    let linked = || Ok((text.to_owned(), Vec::new()));
-    interned(name, format!("{name}\n{text}"), linked).expect("nothing is linked")
+    let key = ShaderKey {
+        root: name.to_owned(),
+        features: BTreeSet::new(),
+        modules: vec![(String::new(), text.to_owned())],
+    };
+    let linked = |_: &ShaderKey| Ok((text.to_owned(), Vec::new()));
+    interned(key, linked).expect("nothing is linked")
 }
 
 type Linked = (String, Vec<Binding>);
 
-/// The shader of a key, which names all that decides its text; linked where it is not known.
+/// The shader of a key, linked where it is not known.
 fn interned(
-    root: &str,
-    key: String,
-    link: impl FnOnce() -> Result<Linked, ShaderError>,
+    key: ShaderKey,
+    link: impl FnOnce(&ShaderKey) -> Result<Linked, ShaderError>,
 ) -> Result<Arc<Shader>, ShaderError> {
-    static KNOWN: LazyLock<Mutex<HashMap<String, Arc<Shader>>>> = LazyLock::new(Default::default);
+    static KNOWN: LazyLock<Mutex<HashMap<ShaderKey, Arc<Shader>>>> =
+        LazyLock::new(Default::default);
     if let Some(shader) = locked(&KNOWN).get(&key) {
         return Ok(shader.clone());
     }
     // Linking takes long: the lock is not held meanwhile, and the first of two equal shaders stays.
-    let (text, bindings) = link()?;
+    let (text, bindings) = link(&key)?;
     let mut known = locked(&KNOWN);
     let shader = Arc::new(Shader {
-        id: known.len() as u32,
-        name: root.to_owned(),
+        id: ShaderId(known.len() as u32),
+        name: key.root.clone(),
         text,
         bindings,
     });
     Ok(known.entry(key).or_insert(shader).clone())
 }
 
-fn link_uncached(
-    root: &str,
-    features: &BTreeSet<&str>,
-    modules: &[(&str, &str)],
-) -> Result<Linked, ShaderError> {
+fn link_uncached(key: &ShaderKey) -> Result<Linked, ShaderError> {
     let mut resolver = VirtualResolver::new();
-    for (path, text) in SOURCES.iter().chain(modules) {
-        resolver.add_module(module_path(path)?, Cow::Borrowed(*text));
+    let modules = key.modules.iter().map(|(p, t)| (p.as_str(), t.as_str()));
+    for (path, text) in SOURCES.iter().copied().chain(modules) {
+        resolver.add_module(module_path(path)?, Cow::Borrowed(text));
     }
     let mut linker = Wesl::new_barebones().set_custom_resolver(resolver);
     let mut options = wesl::CompileOptions {
@@ -152,13 +166,13 @@ fn link_uncached(
         ..Default::default()
     };
     options.features.default = wesl::Feature::Disable;
-    let on = features
-        .iter()
-        .map(|&f| (f.to_owned(), wesl::Feature::Enable));
+    let on = key.features.iter().cloned();
+    let on = on.map(|feature| (feature, wesl::Feature::Enable));
     options.features.flags.extend(on);
     linker
         .set_options(options)
         .set_mangler(wesl::ManglerKind::Escape);
+    let root = &key.root;
     let linked = linker.compile(&module_path(root)?);
     let linked = linked.map_err(|e| ShaderError(format!("linking shader {root} failed:\n{e}")))?;
     let text = linked.to_string();
