@@ -13,7 +13,7 @@ use peelnet_render::{
 use peelnet_scene::Material;
 use peelnet_tests::{
     HALF, assert_all, assert_near, assert_refused, draw, frame, gpu, half_sums, network_of, object,
-    prepare, rectangle, representatives, scene, wall, walls,
+    opaque, prepare, rectangle, representatives, scene, wall, walls,
 };
 
 /// An opaque silhouette inside smoke: all layers have one colour, so every normalised method, whatever its weights, shows
@@ -199,7 +199,7 @@ fn a_lower_resolution_keeps_what_does_not_vary() {
 fn a_lower_resolution_keeps_opaque_edges() {
     let gpu = gpu();
     let post = rectangle([-0.7, 0.8], [-4.0, 4.0], 2.0);
-    let post = object(&post, Material::unlit([0.0; 3], 1.0));
+    let post = object(&post, opaque([0.0; 3]));
     let glass = wall(6.0, Material::unlit([1.0; 3], 0.5));
     let scene = scene("post", [0.0; 3], vec![post, glass]);
     let size = [33, 29];

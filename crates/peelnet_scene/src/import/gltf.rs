@@ -56,7 +56,10 @@ fn parse(bytes: &[u8]) -> Result<(gltf::Document, Option<Vec<u8>>), String> {
     // A byte order mark is no JSON, but some editors write one.
     let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
     // The crate skips unknown names without checking that they are text.
-    let document = serde_json::from_slice::<Value>(text).map_err(|e| bad(&e))?;
+    let mut document = serde_json::from_slice::<Value>(text).map_err(|e| bad(&e))?;
+    if let Some(fields) = document.as_object_mut() {
+        fields.retain(|name, field| !(field.is_null() && name.starts_with("scene")));
+    }
     checks::check_version(&document)?;
     checks::check_extensions(&document)?;
     let mut root: Root = serde_json::from_value(document)

@@ -381,6 +381,7 @@ fn common_files_that_are_not_strict() {
     d.as_object_mut().unwrap().remove("scenes");
     d.as_object_mut().unwrap().remove("scene");
     same(load(&d));
+    same(load(&changed("scenes = null ; scene = null")));
     // Names are percent-encoded, or not.
     for (name, uri) in [("a b%.bin", "a%20b%25.bin"), ("a%20b.bin", "a%20b.bin")] {
         let text = changed(&format!("buffers/0/uri = \"{uri}\"")).to_string();
