@@ -52,9 +52,9 @@ class Display:
     def __init__(self):
         number = next(n for n in range(90, 200) if not pathlib.Path(f"/tmp/.X11-unix/X{n}").exists())
         self.name = f":{number}"
-        self.process = subprocess.Popen(
-            ["Xvfb", self.name, "-screen", "0", f"{SIZE[0]}x{SIZE[1] + SHELF}x24"], stderr=subprocess.DEVNULL
-        )
+        # Without a reset when the last window closes, during which no other can connect.
+        screen = f"{SIZE[0]}x{SIZE[1] + SHELF}x24"
+        self.process = subprocess.Popen(["Xvfb", self.name, "-noreset", "-screen", "0", screen], stderr=subprocess.DEVNULL)
         for _ in range(100):
             if pathlib.Path(f"/tmp/.X11-unix/X{number}").exists():
                 break

@@ -18,24 +18,32 @@ use support::{cards, exact, headless::Headless};
 
 const SIZE: UVec2 = UVec2::new(640, 480);
 
-struct Options {
-    cards: usize,
-    samples: u32,
-    out: PathBuf,
-}
-
 fn main() -> Result<(), Box<dyn Error>> {
-    let options = Options::parse()?;
-    let scene = cards::many(options.cards);
-    let exact = exact::picture(&scene, SIZE, options.samples);
+    let (mut card_count, mut samples, mut out) = (40, 1, PathBuf::from("out/compare"));
+    let mut arguments = std::env::args().skip(1);
+    while let Some(name) = arguments.next() {
+        let value = arguments.next();
+        let value = value.ok_or_else(|| format!("{name} needs a value"))?;
+        match name.as_str() {
+            "--cards" => card_count = value.parse()?,
+            "--samples" => samples = value.parse()?,
+            "--out" => out = value.into(),
+            _ => return Err(format!("{name} is not known: --cards, --samples or --out").into()),
+        }
+    }
+    if ![1, 4].contains(&samples) {
+        return Err("--samples takes 1 or 4".into());
+    }
+    let scene = cards::many(card_count);
+    let exact = exact::picture(&scene, SIZE, samples);
 
-    let msaa = Msaa::from_samples(options.samples);
+    let msaa = Msaa::from_samples(samples);
     let mut headless = Headless::new(SIZE, msaa, PeelnetPlugin::default(), &scene);
 
-    let mut pictures = vec![("exact", exact.bytes())];
+    let mut pictures = vec![("exact", exact::bytes_of(&exact))];
     pictures.push(("sorted", headless.picture()));
     // Bevy's own technique has no multisampling.
-    if options.samples == 1 {
+    if samples == 1 {
         let usual = OrderIndependentTransparencySettings::default();
         let many = OrderIndependentTransparencySettings {
             sorted_fragment_max_count: 32,
@@ -46,9 +54,8 @@ fn main() -> Result<(), Box<dyn Error>> {
             headless.camera().insert(settings);
             pictures.push((name, headless.picture()));
         }
-        headless
-            .camera()
-            .remove::<OrderIndependentTransparencySettings>();
+        let mut camera = headless.camera();
+        camera.remove::<OrderIndependentTransparencySettings>();
     }
     pictures.push(("medium", headless.learned().picture()));
     // An application has one network.
@@ -60,31 +67,28 @@ fn main() -> Result<(), Box<dyn Error>> {
         pictures.push((name, headless.learned().picture()));
     }
 
-    fs::create_dir_all(&options.out)?;
+    fs::create_dir_all(&out)?;
     println!(
-        "{} cards, {SIZE}, {} samples a pixel; errors of 255 against the exact image",
-        options.cards, options.samples
+        "{card_count} cards, {SIZE}, {samples} samples a pixel; errors of 255 against the exact image"
     );
     println!("method           rmse    max  pixels off by more than 2");
     for (name, picture) in &pictures {
-        let errors = exact.errors_of(picture);
+        let errors = exact::errors_of(&exact, picture);
         println!(
             "{name:15} {:5.2}  {:5.1}  {:.1} %",
             errors.rmse,
             errors.max,
             100.0 * errors.visible
         );
-        let path = options.out.join(format!("{name}.png"));
-        save(&path, SIZE, &[picture])?;
+        save(&out.join(format!("{name}.png")), &[picture])?;
     }
-    let judged = exact.certain.iter().filter(|&&certain| certain).count();
+    let all: Vec<&Vec<u8>> = pictures.iter().map(|(_, picture)| picture).collect();
     println!(
         "judged: {:.1} % of the pixels; in the others an edge or a cut passes a sample within 0.02 pixels",
-        100.0 * judged as f64 / exact.certain.len() as f64
+        100.0 * exact::errors_of(&exact, all[0]).judged
     );
-    let path = options.out.join("all.png");
-    let all: Vec<&Vec<u8>> = pictures.iter().map(|(_, picture)| picture).collect();
-    save(&path, SIZE, &all)?;
+    let path = out.join("all.png");
+    save(&path, &all)?;
     println!(
         "{}: the pictures in this order, from left to right",
         path.display()
@@ -92,47 +96,16 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-impl Options {
-    fn parse() -> Result<Self, Box<dyn Error>> {
-        let mut options = Self {
-            cards: 40,
-            samples: 1,
-            out: "out/compare".into(),
-        };
-        let mut arguments = std::env::args().skip(1);
-        while let Some(name) = arguments.next() {
-            let value = arguments
-                .next()
-                .ok_or_else(|| format!("{name} needs a value"))?;
-            match name.as_str() {
-                "--cards" => options.cards = value.parse()?,
-                "--samples" => options.samples = value.parse()?,
-                "--out" => options.out = value.into(),
-                _ => return Err(format!("{name} is not known: --cards, --samples or --out").into()),
-            }
-        }
-        if ![1, 4].contains(&options.samples) {
-            return Err("--samples takes 1 or 4".into());
-        }
-        Ok(options)
-    }
-}
-
-/// Writes pictures of one size in a row.
-fn save(path: &Path, size: UVec2, pictures: &[&Vec<u8>]) -> Result<(), Box<dyn Error>> {
-    let row = 4 * size.x as usize;
+/// Writes pictures in a row.
+fn save(path: &Path, pictures: &[&Vec<u8>]) -> Result<(), Box<dyn Error>> {
+    let row = 4 * SIZE.x as usize;
     let mut bytes = Vec::new();
-    for y in 0..size.y as usize {
+    for y in 0..SIZE.y as usize {
         for picture in pictures {
-            bytes.extend_from_slice(&picture[y * row..(y + 1) * row]);
+            bytes.extend_from_slice(&picture[y * row..][..row]);
         }
     }
-    let width = size.x * pictures.len() as u32;
-    Ok(image::save_buffer(
-        path,
-        &bytes,
-        width,
-        size.y,
-        image::ColorType::Rgba8,
-    )?)
+    let width = SIZE.x * pictures.len() as u32;
+    image::save_buffer(path, &bytes, width, SIZE.y, image::ColorType::Rgba8)?;
+    Ok(())
 }

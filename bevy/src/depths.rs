@@ -24,14 +24,14 @@ pub(crate) fn extract_boxes(
     mut boxes: ResMut<Boxes>,
 ) {
     boxes.0.clear();
-    if cameras.is_empty() {
-        return;
-    }
-    for (entity, bounds, transform, visibility) in &meshes {
-        if visibility.get() {
-            let placed = (*bounds, transform.affine());
-            boxes.0.insert(entity.into(), placed);
-        }
+    if !cameras.is_empty() {
+        let visible = meshes.iter().filter(|(.., visibility)| visibility.get());
+        boxes
+            .0
+            .extend(visible.map(|(entity, bounds, transform, _)| {
+                let placed = (*bounds, transform.affine());
+                (entity.into(), placed)
+            }));
     }
 }
 
@@ -95,10 +95,7 @@ mod tests {
     /// The box of this half side around a point, turned about the y axis.
     fn placed(half: f32, angle: f32, z: f32) -> Option<PlacedBox> {
         let (turn, to) = (Quat::from_rotation_y(angle), Vec3::new(0.0, 0.0, z));
-        let bounds = Aabb {
-            center: Vec3A::ZERO,
-            half_extents: Vec3A::splat(half),
-        };
+        let bounds = Aabb::from_min_max(Vec3::splat(-half), Vec3::splat(half));
         Some((bounds, Affine3A::from_rotation_translation(turn, to)))
     }
 

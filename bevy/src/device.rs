@@ -15,25 +15,10 @@ use bevy::{
 
 /// Why the present device cannot draw, by samples a pixel. Asked once; another device is asked again.
 #[derive(Default, Resource)]
-pub(crate) struct Refusals(HashMap<u32, Option<String>>);
-
-impl Refusals {
-    pub fn find(
-        &mut self,
-        model: &PeelnetModel,
-        samples: u32,
-        device: &RenderDevice,
-        adapter: &RenderAdapter,
-    ) -> Option<String> {
-        let refusal = self.0.entry(samples);
-        refusal
-            .or_insert_with(|| refusal_of(model, samples, device, adapter))
-            .clone()
-    }
-}
+pub(crate) struct Refusals(pub HashMap<u32, Option<String>>);
 
 /// Why this device cannot draw with a network at so many samples a pixel.
-fn refusal_of(
+pub(crate) fn refusal_of(
     model: &PeelnetModel,
     samples: u32,
     device: &RenderDevice,

@@ -31,10 +31,8 @@ impl PeelnetMessages {
     /// All messages so far.
     #[must_use]
     pub fn all(&self) -> Vec<(Gravity, String)> {
-        self.0
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner)
-            .clone()
+        let messages = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        messages.clone()
     }
 
     pub(crate) fn report(&self, gravity: Gravity, text: String) {

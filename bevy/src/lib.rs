@@ -1,60 +1,4 @@
-//! Order-independent transparency with learned weights, for Bevy.
-//!
-//! Transparent surfaces may be drawn in any order, may intersect, and nothing is sorted. A frame goes like this:
-//!
-//! 1. Bevy draws what is opaque, as ever.
-//! 2. **Range**: all transparent surfaces write the two ends of their pixel's depths, under MAX. Nothing is lit.
-//! 3. **Statistics**: all write what a pixel keeps of its layers into two to four targets, under MAX and ADD. Nothing is lit.
-//! 4. **Weights**: all are lit, and add their colours, each weighed by a small network that guesses from the statistics how much of the
-//!    surface is visible.
-//! 5. **Resolve**: the sums become the pixel's colour, over the opaque scene. Tone mapping and the rest of Bevy's frame follow.
-//!
-//! The passes, their targets and their shader text come from the exported network ([`PeelnetModel`]); nothing here depends on a recipe.
-//!
-//! ```no_run
-//! use bevy::prelude::*;
-//! use bevy_peelnet::{LearnedTransparency, PeelnetPlugin};
-//!
-//! App::new()
-//!     .add_plugins((DefaultPlugins, PeelnetPlugin::default()))
-//!     .add_systems(Startup, |mut commands: Commands| {
-//!         commands.spawn((Camera3d::default(), LearnedTransparency::default()));
-//!     })
-//!     .run();
-//! ```
-//!
-//! # Materials
-//!
-//! `StandardMaterial`, and extensions of it that keep its fragment shader, need nothing. A material with a fragment shader of its own imports
-//! two names from `bevy_peelnet::draw` and returns another structure in our passes:
-//!
-//! ```wgsl
-//! @if(PEELNET)
-//! import bevy_peelnet::draw::{PeelnetOutput, peelnet_output};
-//!
-//! fn shade(in: VertexOutput) -> vec4f { /* as before */ }
-//!
-//! @if(!PEELNET)
-//! @fragment
-//! fn fragment(in: VertexOutput) -> @location(0) vec4f { return shade(in); }
-//!
-//! @if(PEELNET)
-//! @fragment
-//! fn fragment(in: VertexOutput, @builtin(sample_index) sample_index: u32) -> PeelnetOutput {
-//!     return peelnet_output(in.position, sample_index, shade(in));
-//! }
-//! ```
-//!
-//! `PEELNET_NEEDS_COLOR` is defined in the pass that needs the lit colour, `PEELNET_NEEDS_ALPHA` where at least opacity matters. Materials that
-//! do not import the module are drawn by Bevy, sorted, over the weighed surfaces, and a message says so once. So are `AlphaMode::Add` and
-//! `AlphaMode::Multiply`, without a message.
-//!
-//! # What is refused
-//!
-//! A network of another version or recipe, a device without five bind groups or the needed blending, and a camera that has Bevy's
-//! own technique as well: one message each ([`PeelnetMessages`], and the log), and Bevy draws the scene as if the plugin were not there.
-//!
-//! A lost device is Bevy's to replace (`RenderErrorHandler`, by default it quits). Where it does, learned transparency uses the new one.
+#![doc = include_str!("../README.md")]
 
 mod depths;
 mod device;
@@ -75,14 +19,12 @@ use bevy::{
         core_3d::{main_opaque_pass_3d, main_transparent_pass_3d},
         schedule::{Core3d, Core3dSystems},
     },
-    pbr::{MeshPipeline, main_transmissive_pass_3d},
-    platform::collections::HashSet,
+    pbr::main_transmissive_pass_3d,
     prelude::*,
     render::{
-        Extract, ExtractSchedule, GpuResourceAppExt, Render, RenderApp, RenderDebugFlags,
-        RenderStartup, RenderSystems,
+        Extract, ExtractSchedule, GpuResourceAppExt, Render, RenderApp, RenderStartup,
+        RenderSystems,
         extract_component::{ExtractComponent, ExtractComponentPlugin},
-        render_phase::{AddRenderCommand, DrawFunctions, SortedRenderPhasePlugin},
         render_resource::SpecializedRenderPipelines,
     },
     shader::{Shader, ShaderImport},
@@ -121,9 +63,7 @@ pub struct LearnedTransparency {
 }
 
 /// Adds [`LearnedTransparency`]. Must come after `DefaultPlugins`.
-pub struct PeelnetPlugin {
-    model: Result<PeelnetModel, PeelnetError>,
-}
+pub struct PeelnetPlugin(Result<PeelnetModel, PeelnetError>);
 
 impl Default for PeelnetPlugin {
     /// With [`PeelnetModel::medium`].
@@ -134,14 +74,14 @@ impl Default for PeelnetPlugin {
 
 impl From<PeelnetModel> for PeelnetPlugin {
     fn from(model: PeelnetModel) -> Self {
-        Self { model: Ok(model) }
+        Self(Ok(model))
     }
 }
 
 impl From<Result<PeelnetModel, PeelnetError>> for PeelnetPlugin {
     /// With a network that may be refused. Then the plugin reports why, and Bevy draws the scene.
     fn from(model: Result<PeelnetModel, PeelnetError>) -> Self {
-        Self { model }
+        Self(model)
     }
 }
 
@@ -157,28 +97,19 @@ impl Plugin for PeelnetPlugin {
             messages.report(Gravity::Warning, text.into());
             return;
         }
-        app.add_plugins((
-            ExtractComponentPlugin::<LearnedTransparency>::default(),
-            SortedRenderPhasePlugin::<phase::Learned3d, MeshPipeline>::new(
-                RenderDebugFlags::default(),
-            ),
-        ));
-        let setup = match &self.model {
-            Ok(model) => Some(setup_of(app, model)),
+        let model = match &self.0 {
+            Ok(model) => model,
             Err(error) => {
                 let text =
                     format!("no learned transparency: {error}. Bevy draws transparent surfaces");
                 messages.report(Gravity::Error, text);
-                None
+                return;
             }
         };
-        let Some(render_app) = app.get_sub_app_mut(RenderApp) else {
-            return;
-        };
-        if let Some(setup) = setup {
-            render_app.insert_resource(setup);
-        }
-        render_app
+        app.add_plugins(ExtractComponentPlugin::<LearnedTransparency>::default());
+        let setup = setup_of(app, model);
+        app.sub_app_mut(RenderApp)
+            .insert_resource(setup)
             .insert_resource(messages)
             .init_resource::<depths::Boxes>()
             .init_resource::<HookedShaders>()
@@ -186,8 +117,6 @@ impl Plugin for PeelnetPlugin {
             .init_gpu_resource::<LearnedPipelines>()
             .init_gpu_resource::<SpecializedRenderPipelines<Setup>>()
             .init_gpu_resource::<view::LearnedViews>()
-            .init_resource::<DrawFunctions<phase::Learned3d>>()
-            .add_render_command::<phase::Learned3d, pass::DrawLearned>()
             .add_systems(RenderStartup, report_new_device)
             .add_systems(
                 ExtractSchedule,
@@ -196,10 +125,10 @@ impl Plugin for PeelnetPlugin {
             .add_systems(
                 Render,
                 (
-                    phase::lend_items
-                        .after(RenderSystems::Queue)
-                        .before(RenderSystems::PhaseSort),
-                    view::prepare_views.in_set(RenderSystems::PrepareResources),
+                    phase::mark_items
+                        .after(RenderSystems::PhaseSort)
+                        .before(RenderSystems::Prepare),
+                    view::prepare_views.in_set(RenderSystems::PrepareBindGroups),
                     phase::return_items.in_set(RenderSystems::Cleanup),
                 ),
             )
@@ -246,23 +175,14 @@ fn report_new_device(messages: Res<PeelnetMessages>, mut had_one: Local<bool>) {
 fn extract_hooked_shaders(
     shaders: Extract<Res<Assets<Shader>>>,
     mut hooked: ResMut<HookedShaders>,
-    pipelines: Option<ResMut<LearnedPipelines>>,
 ) {
-    if !shaders.is_changed() {
-        return;
-    }
-    let imports_hook = |shader: &Shader| {
-        shader.imports.iter().any(|import| match import {
+    if shaders.is_changed() {
+        let is_hook = |import: &ShaderImport| match import {
             ShaderImport::Custom(path) => path.starts_with(HOOK),
             ShaderImport::AssetPath(_) => false,
-        })
-    };
-    let all = shaders.iter().filter(|(_, shader)| imports_hook(shader));
-    let all: HashSet<_> = all.map(|(id, _)| id).collect();
-    if all != hooked.0 {
-        hooked.0 = all;
-        if let Some(mut pipelines) = pipelines {
-            pipelines.ask_again();
-        }
+        };
+        let all = shaders.iter();
+        let all = all.filter(|(_, shader)| shader.imports.iter().any(is_hook));
+        hooked.0 = all.map(|(id, _)| id).collect();
     }
 }

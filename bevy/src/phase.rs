@@ -1,20 +1,20 @@
-//! The render phase of learned transparency, and how items come into it.
+//! Which transparent surfaces are weighed.
 //!
-//! Bevy queues every transparent mesh into its own phase, once, and keeps it there until it changes. Each frame the items that can be weighed are
-//! lent from that phase to [`Learned3d`] after queueing, so that batching makes one list for each, and go back after the frame. So Bevy's bookkeeping
-//! of what is retained and what is stale stays right, and whatever is not lent is drawn by Bevy as ever: sorted, over the weighed surfaces.
+//! Bevy queues every transparent mesh into its phase, once, and keeps it there until it changes. Each frame the items that can be weighed are
+//! marked, so that batching keeps them apart from others, are taken out when they are batched ([`crate::view`]), and go back after the frame. So
+//! Bevy's bookkeeping of what is retained and what is stale stays right, and whatever is not taken is drawn by Bevy as ever: sorted, over the
+//! weighed surfaces.
 
 use crate::{
     DepthRange, LearnedTransparency,
     depths::{Boxes, clipped, depths_of_boxes},
-    device::Refusals,
+    device::{Refusals, refusal_of},
     error::{Gravity, PeelnetMessages},
     pipelines::{Found, HookedShaders, LearnedPipelines, Setup},
     view::LearnedViews,
 };
 use bevy::{
     core_pipeline::{core_3d::Transparent3d, oit::OrderIndependentTransparencySettings},
-    ecs::{entity::EntityHash, system::SystemParam},
     material::labels::DrawFunctionId,
     pbr::{DrawMaterial, PreparedMaterial, RenderMaterialInstances},
     platform::collections::HashSet,
@@ -22,117 +22,45 @@ use bevy::{
     render::{
         camera::ExtractedCamera,
         erased_render_asset::ErasedRenderAssets,
-        render_phase::{
-            CachedRenderPipelinePhaseItem, DrawFunctions, PhaseItem, PhaseItemExtraIndex,
-            SortedPhaseItem, SortedRenderPhase, ViewSortedRenderPhases,
-        },
-        render_resource::{CachedRenderPipelineId, PipelineCache, SpecializedRenderPipelines},
+        render_phase::*,
+        render_resource::{PipelineCache, SpecializedRenderPipelines},
         renderer::{RenderAdapter, RenderDevice},
-        sync_world::MainEntity,
         view::{ExtractedView, RetainedViewEntity},
     },
 };
-use indexmap::IndexMap;
-use std::ops::Range;
 
-/// A transparent mesh that is weighed, not sorted. It is Bevy's item: same entity, same draw, same material.
-pub(crate) struct Learned3d(Transparent3d);
+/// Marks items that are weighed, between sorting and batching. No such function exists: Bevy never sees one.
+pub(crate) const WEIGHED: DrawFunctionId = DrawFunctionId(u32::MAX);
 
-impl PhaseItem for Learned3d {
-    fn entity(&self) -> Entity {
-        self.0.entity()
-    }
-
-    fn main_entity(&self) -> MainEntity {
-        self.0.main_entity()
-    }
-
-    fn draw_function(&self) -> DrawFunctionId {
-        self.0.draw_function()
-    }
-
-    fn batch_range(&self) -> &Range<u32> {
-        self.0.batch_range()
-    }
-
-    fn batch_range_mut(&mut self) -> &mut Range<u32> {
-        self.0.batch_range_mut()
-    }
-
-    fn extra_index(&self) -> PhaseItemExtraIndex {
-        self.0.extra_index()
-    }
-
-    fn batch_range_and_extra_index_mut(&mut self) -> (&mut Range<u32>, &mut PhaseItemExtraIndex) {
-        self.0.batch_range_and_extra_index_mut()
-    }
-}
-
-impl SortedPhaseItem for Learned3d {
-    // Any order gives the same image, so items of one pipeline stand together: that makes long batches. The entity keeps the order of frames
-    // the same, and with it how sums round.
-    type SortKey = (usize, MainEntity);
-
-    fn sort_key(&self) -> Self::SortKey {
-        (self.0.pipeline.id(), self.0.main_entity())
-    }
-
-    fn recalculate_sort_keys(
-        _: &mut IndexMap<(Entity, MainEntity), Self, EntityHash>,
-        _: &ExtractedView,
-    ) {
-    }
-
-    fn indexed(&self) -> bool {
-        self.0.indexed
-    }
-}
-
-impl CachedRenderPipelinePhaseItem for Learned3d {
-    fn cached_pipeline(&self) -> CachedRenderPipelineId {
-        self.0.pipeline
-    }
-}
-
-/// What decides whether an item can be weighed.
-#[derive(SystemParam)]
-pub(crate) struct Materials<'w> {
-    instances: Res<'w, RenderMaterialInstances>,
-    prepared: Res<'w, ErasedRenderAssets<PreparedMaterial>>,
-    draw_functions: Res<'w, DrawFunctions<Transparent3d>>,
-    hooked: Res<'w, HookedShaders>,
-}
-
-impl Materials<'_> {
-    /// Whether weights apply to the item at all: a mesh that is drawn as Bevy draws materials, and that absorbs what is behind it. Sums of
-    /// light (`AlphaMode::Add`) and filters (`AlphaMode::Multiply`) have no order or no coverage.
-    fn applies(&self, item: &Transparent3d) -> bool {
-        if self.draw_functions.read().get_id::<DrawMaterial>() != Some(item.draw_function) {
-            return false;
-        }
-        let instance = self.instances.instances.get(&item.main_entity());
-        let material = instance.and_then(|instance| self.prepared.get(instance.asset_id));
-        material.is_some_and(|material| {
-            let mode = material.properties.alpha_mode;
-            matches!(mode, AlphaMode::Blend | AlphaMode::Premultiplied)
-        })
-    }
+/// Whether weights apply to the item's material: it absorbs what is behind it. Sums of light (`AlphaMode::Add`) and filters
+/// (`AlphaMode::Multiply`) have no order or no coverage.
+fn absorbs(
+    item: &Transparent3d,
+    instances: &RenderMaterialInstances,
+    prepared: &ErasedRenderAssets<PreparedMaterial>,
+) -> bool {
+    let instance = instances.instances.get(&item.main_entity());
+    let material = instance.and_then(|instance| prepared.get(instance.asset_id));
+    let mode = material.map(|material| material.properties.alpha_mode);
+    matches!(mode, Some(AlphaMode::Blend | AlphaMode::Premultiplied))
 }
 
 /// Frames without transparent surfaces before that is said: meshes and materials take some to load.
 const FRAMES_TO_LOAD: u32 = 60;
 
-pub(crate) fn lend_items(
-    setup: Option<Res<Setup>>,
+pub(crate) fn mark_items(
+    setup: Res<Setup>,
     messages: Res<PeelnetMessages>,
-    materials: Materials<'_>,
+    instances: Res<RenderMaterialInstances>,
+    prepared: Res<ErasedRenderAssets<PreparedMaterial>>,
+    draw_functions: Res<DrawFunctions<Transparent3d>>,
+    hooked: Res<HookedShaders>,
     boxes: Res<Boxes>,
     cache: Res<PipelineCache>,
     (device, adapter): (Res<RenderDevice>, Res<RenderAdapter>),
     mut pipelines: ResMut<LearnedPipelines>,
     mut resolves: ResMut<SpecializedRenderPipelines<Setup>>,
     mut transparent: ResMut<ViewSortedRenderPhases<Transparent3d>>,
-    mut learned: ResMut<ViewSortedRenderPhases<Learned3d>>,
     mut views: ResMut<LearnedViews>,
     mut refusals: ResMut<Refusals>,
     cameras: Query<
@@ -145,8 +73,8 @@ pub(crate) fn lend_items(
         With<ExtractedCamera>,
     >,
 ) {
-    // Without a network the reason stands in the log since start-up.
-    let Some(setup) = setup else { return };
+    // Meshes that are drawn as Bevy draws materials.
+    let draw_material = draw_functions.read().get_id::<DrawMaterial>();
     let mut live: HashSet<RetainedViewEntity> = HashSet::default();
     for (view, settings, msaa, has_bevys) in &cameras {
         let id = view.retained_view_entity;
@@ -155,7 +83,10 @@ pub(crate) fn lend_items(
         let refusal = if has_bevys {
             Some("it has OrderIndependentTransparencySettings, Bevy's own technique, as well; remove one of the two".to_owned())
         } else {
-            refusals.find(&setup.model, samples, &device, &adapter)
+            let refusal = refusals.0.entry(samples);
+            refusal
+                .or_insert_with(|| refusal_of(&setup.model, samples, &device, &adapter))
+                .clone()
         };
         if let Some(reason) = refusal {
             let text = format!(
@@ -165,11 +96,10 @@ pub(crate) fn lend_items(
             messages.report(Gravity::Error, text);
             continue;
         }
-        let Some(from) = transparent.get_mut(&id) else {
+        let Some(phase) = transparent.get_mut(&id) else {
             continue;
         };
         live.insert(id);
-        let into = learned.entry(id).or_default();
         let key = (view.target_format, samples);
         let resolve = resolves.specialize(&cache, &setup, key);
         let state = views.0.entry(id).or_default();
@@ -177,11 +107,11 @@ pub(crate) fn lend_items(
         if cache.get_render_pipeline(resolve).is_none() {
             continue;
         }
-        let lent = from.items.extract_if(.., |_, item| {
-            if !materials.applies(item) {
+        let mut is_weighed = |item: &Transparent3d| {
+            if Some(item.draw_function) != draw_material || !absorbs(item, &instances, &prepared) {
                 return false;
             }
-            match pipelines.find(item.pipeline, &cache, &setup, &materials.hooked) {
+            match pipelines.find(item.pipeline, &cache, &setup, &hooked) {
                 Found::Ready => true,
                 Found::Waiting => false,
                 Found::NoHook => {
@@ -194,13 +124,22 @@ pub(crate) fn lend_items(
                     false
                 }
             }
+        };
+        for item in phase.items.values_mut() {
+            if is_weighed(item) {
+                item.draw_function = WEIGHED;
+            }
+        }
+        // Any order gives the same image, so items of one pipeline stand together: that makes long batches. The entity keeps the order of
+        // frames the same, and with it how sums round. Others come first and keep Bevy's order.
+        phase.items.sort_by_key(|_, item| {
+            (item.draw_function == WEIGHED).then_some((item.pipeline.id(), item.main_entity()))
         });
-        let lent = lent.map(|(key, item)| (key, Learned3d(item)));
-        into.items.extend(lent);
-        // Sorted by pipeline, not by depth.
-        into.sort();
+        let items = &phase.items;
+        let first = items.partition_point(|_, item| item.draw_function != WEIGHED);
+        let weighed = items.values().skip(first);
         state.frames_without += 1;
-        if !into.items.is_empty() {
+        if weighed.len() > 0 {
             state.frames_without = 0;
         }
         if state.frames_without == FRAMES_TO_LOAD {
@@ -210,40 +149,35 @@ pub(crate) fn lend_items(
             );
             messages.report(Gravity::Info, text);
         }
-        state.depths = depths_of(view, settings, into, &boxes, &messages);
+        state.depths = depths_of(view, settings, weighed, &boxes, &messages);
     }
-    learned.retain(|id, _| live.contains(id));
     views.0.retain(|id, _| live.contains(id));
 }
 
-/// Gives all items back, as they were queued.
+/// Gives all items back.
 pub(crate) fn return_items(
     mut transparent: ResMut<ViewSortedRenderPhases<Transparent3d>>,
-    mut learned: ResMut<ViewSortedRenderPhases<Learned3d>>,
+    mut views: ResMut<LearnedViews>,
 ) {
-    for (id, phase) in learned.iter_mut() {
-        let into = transparent.get_mut(id);
-        let items = phase.items.drain(..);
-        let Some(into) = into else { continue };
-        into.items.extend(items.map(|(key, Learned3d(mut item))| {
-            item.batch_range = 0..1;
-            item.extra_index = PhaseItemExtraIndex::None;
-            (key, item)
-        }));
+    for (id, view) in &mut views.0 {
+        let items = view.items.drain(..);
+        if let Some(into) = transparent.get_mut(id) {
+            into.items.extend(items);
+        }
     }
 }
 
-fn depths_of(
+fn depths_of<'a>(
     view: &ExtractedView,
     settings: &LearnedTransparency,
-    phase: &SortedRenderPhase<Learned3d>,
+    weighed: impl Iterator<Item = &'a Transparent3d>,
     boxes: &Boxes,
     messages: &PeelnetMessages,
 ) -> Vec4 {
     if let DepthRange::Fixed { near, far } = settings.depth_range {
         return clipped(near, far, view.clip_from_view);
     }
-    let placed = phase.items.values().map(|item| {
+    let placed = weighed.map(|item| {
         let placed = boxes.0.get(&item.main_entity()).copied();
         if placed.is_none() {
             let text = format!(

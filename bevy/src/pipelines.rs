@@ -14,13 +14,10 @@ use bevy::{
     platform::collections::{HashMap, HashSet},
     prelude::*,
     render::render_resource::{
-        BindGroupLayoutDescriptor, BlendComponent, BlendFactor, BlendOperation, BlendState,
-        CachedRenderPipelineId, ColorTargetState, ColorWrites, FragmentState, MultisampleState,
-        PipelineCache, PipelineDescriptor, RenderPipelineDescriptor, ShaderStages,
-        SpecializedRenderPipeline, TextureFormat, TextureSampleType,
         binding_types::{texture_2d, texture_2d_multisampled, uniform_buffer},
+        *,
     },
-    shader::{Shader, ShaderDefVal},
+    shader::Shader,
 };
 
 /// The network in use and the shaders around it, for the life of the application.
@@ -50,10 +47,10 @@ pub(crate) enum Found {
     Ready,
 }
 
-/// Pipelines by the pipeline of Bevy's that they are made from.
+/// Pipelines of all passes, by the pipeline of Bevy's that they are made from.
 #[derive(Default, Resource)]
 pub(crate) struct LearnedPipelines(
-    HashMap<CachedRenderPipelineId, Option<Vec<CachedRenderPipelineId>>>,
+    pub HashMap<CachedRenderPipelineId, Vec<CachedRenderPipelineId>>,
 );
 
 impl LearnedPipelines {
@@ -70,42 +67,34 @@ impl LearnedPipelines {
             let Some(cached) = cache.pipelines().nth(base.id()) else {
                 return Found::Waiting;
             };
-            let PipelineDescriptor::RenderPipelineDescriptor(descriptor) = &cached.descriptor
-            else {
+            let Some(all) = learned_descriptors(&cached.descriptor, setup, hooked) else {
                 return Found::NoHook;
             };
-            let pipelines = learned_descriptors(descriptor, setup, hooked)
-                .map(|all| all.into_iter().map(|d| cache.queue_render_pipeline(d)));
-            self.0.insert(base, pipelines.map(Iterator::collect));
+            let queued = all.into_iter().map(|d| cache.queue_render_pipeline(d));
+            self.0.insert(base, queued.collect());
         }
         let is_ready = |&id: &CachedRenderPipelineId| cache.get_render_pipeline(id).is_some();
-        match self.0.get(&base) {
-            Some(Some(ids)) if ids.iter().all(is_ready) => Found::Ready,
-            Some(None) => Found::NoHook,
-            _ => Found::Waiting,
+        if self.0[&base].iter().all(is_ready) {
+            Found::Ready
+        } else {
+            Found::Waiting
         }
-    }
-
-    pub fn get(&self, base: CachedRenderPipelineId, pass: usize) -> Option<CachedRenderPipelineId> {
-        self.0.get(&base)?.as_ref()?.get(pass).copied()
-    }
-
-    /// A shader came or changed: those that had no hook may have one now.
-    pub fn ask_again(&mut self) {
-        self.0.retain(|_, pipelines| pipelines.is_some());
     }
 }
 
 fn learned_descriptors(
-    base: &RenderPipelineDescriptor,
+    base: &PipelineDescriptor,
     setup: &Setup,
     hooked: &HookedShaders,
 ) -> Option<Vec<RenderPipelineDescriptor>> {
-    let fragment = base.fragment.as_ref()?;
-    let shader = if fragment.shader.id() == setup.bevy_standard.id() {
+    let PipelineDescriptor::RenderPipelineDescriptor(base) = base else {
+        return None;
+    };
+    let shader = &base.fragment.as_ref()?.shader;
+    let shader = if shader.id() == setup.bevy_standard.id() {
         &setup.standard
-    } else if hooked.0.contains(&fragment.shader.id()) {
-        &fragment.shader
+    } else if hooked.0.contains(&shader.id()) {
+        shader
     } else {
         return None;
     };
@@ -114,7 +103,7 @@ fn learned_descriptors(
         return None;
     }
     let descriptor = |(number, pass): (usize, &Pass)| {
-        let mut descriptor = base.clone();
+        let mut descriptor = RenderPipelineDescriptor::clone(base);
         descriptor.label = Some(format!("peelnet_{}_pipeline", pass.name).into());
         let samples = descriptor.multisample.count;
         let layout = layout_of(&setup.model, &pass.reads, samples);
@@ -130,15 +119,16 @@ fn learned_descriptors(
         fragment.shader = shader.clone();
         let targets = pass.targets.iter();
         fragment.targets = targets.map(|target| Some(state_of(target))).collect();
-        let defines = [
-            Some("PEELNET".to_owned()),
-            Some(pass_define(number)),
-            pass.needs("alpha")
-                .then(|| "PEELNET_NEEDS_ALPHA".to_owned()),
-            pass.needs("rgb").then(|| "PEELNET_NEEDS_COLOR".to_owned()),
-        ];
-        let defines = defines.into_iter().flatten().map(ShaderDefVal::from);
-        fragment.shader_defs.extend(defines);
+        let defines = &mut fragment.shader_defs;
+        defines.extend(["PEELNET".into(), pass_define(number).into()]);
+        for (variable, define) in [
+            ("alpha", "PEELNET_NEEDS_ALPHA"),
+            ("rgb", "PEELNET_NEEDS_COLOR"),
+        ] {
+            if pass.needs(variable) {
+                defines.push(define.into());
+            }
+        }
         Some(descriptor)
     };
     let passes = setup.model.description.passes.iter();

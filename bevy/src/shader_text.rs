@@ -137,23 +137,3 @@ fn peelnet_resolve_pixel(
         model.description.resolve
     )
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn every_pass_reads_and_writes_what_the_description_says() {
-        let model = PeelnetModel::medium();
-        let text = draw_text(&model) + &resolve_text(&model);
-        for line in [
-            "let range = textureLoad(peelnet_target_range, peelnet_at, peelnet_sample).xy;",
-            "let s = peelnet_statistics(alpha, zeta, range);",
-            "peelnet_out.nearest = s.nearest;",
-            "peelnet_out.sums = vec4f(alpha * rgb, alpha) * w;",
-            "return peelnet_resolve(sums, absorbances.x",
-        ] {
-            assert!(text.contains(line), "{line}\n{text}");
-        }
-    }
-}

@@ -107,12 +107,6 @@ fn facing() -> [Card; 2] {
     [first, second]
 }
 
-fn warnings(headless: &Headless) -> Vec<String> {
-    let messages = headless.messages().into_iter();
-    let grave = messages.filter(|(gravity, _)| *gravity != Gravity::Info);
-    grave.map(|(_, text)| text).collect()
-}
-
 /// Two cards in these materials are exact but for this, and nothing is reported.
 fn check<M: Material, N: Material>(
     msaa: Msaa,
@@ -124,9 +118,8 @@ fn check<M: Material, N: Material>(
     let mut headless = application(msaa);
     spawn_of(&mut headless.app, &scene[0], near(scene[0].color));
     spawn_of(&mut headless.app, &scene[1], far(scene[1].color));
-    let errors = headless.errors(&scene);
-    assert!(errors.max <= most, "{errors:?}");
-    assert_eq!(warnings(&headless), [""; 0]);
+    headless.assert_exact(&scene, most);
+    assert_eq!(headless.messages(), []);
 }
 
 #[test]
@@ -155,12 +148,9 @@ fn a_material_without_the_hook_is_drawn_by_bevy_and_said_once() {
     // In front, where Bevy's drawing after the weighed surfaces is right.
     spawn_of(&mut headless.app, near, Plain { color: near.color });
     spawn_of(&mut headless.app, far, cards::material(far.color));
-    let errors = headless.errors(&scene);
-    assert!(errors.max <= 1.0, "{errors:?}");
-    let warnings = warnings(&headless);
-    assert_eq!(warnings.len(), 1, "{warnings:?}");
-    let says = warnings[0].contains("does not import bevy_peelnet::draw");
-    assert!(says, "{warnings:?}");
+    headless.assert_exact(&scene, 1.0);
+    let says = ["does not import bevy_peelnet::draw"];
+    headless.assert_said(Gravity::Warning, &says);
 }
 
 /// Bevy sorts two cards that face the camera rightly, so that both techniques must give one picture. Returns it.

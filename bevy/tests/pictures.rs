@@ -44,24 +44,22 @@ fn assert_pixel(pixel: &[u8], linear: [f64; 3]) {
 #[test]
 fn two_cards_are_the_closed_form() {
     let scene = cards::two();
-    let errors = medium(&scene).errors(&scene);
-    assert!(errors.max <= ROUNDED, "{errors:?}");
+    let mut headless = medium(&scene);
+    headless.assert_exact(&scene, ROUNDED);
     // Red over green over the background, in the middle.
     let middle = 4 * (SIZE.x * SIZE.y / 2 + SIZE.x / 2) as usize;
     let expected = [0.5 + 0.25 * 0.25, 0.25 + 0.25 * 0.5, 0.25 * 0.75];
-    assert_pixel(&medium(&scene).picture()[middle..], expected);
+    assert_pixel(&headless.picture()[middle..], expected);
 }
 
 #[test]
 fn cards_that_cut_each_other_are_exact_and_not_with_bevys_sorting() {
     let scene = cards::crossing();
     let mut headless = medium(&scene);
-    let errors = headless.errors(&scene);
-    assert!(errors.max <= ROUNDED, "{errors:?}");
+    headless.assert_exact(&scene, ROUNDED);
     // A camera without HDR has the same colours.
     headless.camera().remove::<Hdr>();
-    let errors = headless.errors(&scene);
-    assert!(errors.max <= ROUNDED, "{errors:?}");
+    headless.assert_exact(&scene, ROUNDED);
     // The scene would prove nothing if sorting got it right.
     let errors = sorted(&scene, Msaa::Off);
     assert!(errors.max > 20.0, "{errors:?}");
@@ -73,27 +71,22 @@ fn many_layers_err_far_less_than_bevys_sorting() {
     let bevys = sorted(&scene, Msaa::Off);
     // With four samples, each is composited by itself.
     let bevys_of_four = sorted(&scene, Msaa::Sample4);
-    for (model, msaa, share) in [
-        (PeelnetModel::small(), Msaa::Off, 0.2),
-        (PeelnetModel::medium(), Msaa::Off, 0.1),
-        (PeelnetModel::large(), Msaa::Off, 0.1),
-        (PeelnetModel::medium(), Msaa::Sample4, 0.1),
+    for (model, msaa, share, bevys) in [
+        (PeelnetModel::small(), Msaa::Off, 0.2, bevys),
+        (PeelnetModel::medium(), Msaa::Off, 0.1, bevys),
+        (PeelnetModel::large(), Msaa::Off, 0.1, bevys),
+        (PeelnetModel::medium(), Msaa::Sample4, 0.1, bevys_of_four),
     ] {
         let recipe = model.recipe().to_owned();
         let errors = learned(&scene, msaa, model).errors(&scene);
-        let bevys = if msaa == Msaa::Off {
-            bevys
-        } else {
-            bevys_of_four
-        };
         println!("{recipe}: {errors:?}; sorted: {bevys:?}");
         let limit = share * bevys.rmse;
         assert!(errors.rmse < limit, "{recipe}: {errors:?}, {bevys:?}");
     }
     // Pixels that are partly covered are part of it: a scene of edges.
     let edges = cards::crossing();
-    let errors = learned(&edges, Msaa::Sample4, PeelnetModel::medium()).errors(&edges);
-    assert!(errors.max <= 1.5 * ROUNDED, "{errors:?}");
+    let mut headless = learned(&edges, Msaa::Sample4, PeelnetModel::medium());
+    headless.assert_exact(&edges, 1.5 * ROUNDED);
 }
 
 #[test]
@@ -108,10 +101,7 @@ fn a_depth_prepass_changes_nothing() {
 fn an_orthographic_camera_has_its_own_scale() {
     // Cards that face the camera, in another order than they are spawned in. Seen without perspective, every pixel of the middle is
     // composited alike.
-    let facing = |z: f32, [red, green, blue, alpha]: [f32; 4]| Card {
-        transform: Transform::from_xyz(0.0, 0.0, z).with_scale(Vec3::splat(9.0)),
-        color: LinearRgba::new(red, green, blue, alpha),
-    };
+    let facing = |z, color| cards::card([0.0, 0.0, z], [9.0, 9.0], color);
     // Two stand behind the camera's position and are seen, because the near plane is there, too.
     let scene = [
         facing(8.5, [1.0, 0.0, 0.0, 0.5]),
@@ -153,7 +143,7 @@ fn a_viewport_shows_the_scene_in_its_part_of_the_image() {
         &picture[at..at + 4 * size.x as usize]
     });
     let part: Vec<u8> = part.copied().collect();
-    let errors = exact::picture(&scene, size, 1).errors_of(&part);
+    let errors = exact::errors_of(&exact::picture(&scene, size, 1), &part);
     assert!(errors.max <= ROUNDED, "{errors:?}");
 }
 
@@ -180,15 +170,14 @@ fn techniques_can_be_switched_while_running() {
     let mut headless = Headless::new(SIZE, Msaa::Off, PeelnetPlugin::default(), &scene);
     let first = headless.picture();
     let mut headless = headless.learned();
-    assert!(headless.errors(&scene).max <= ROUNDED);
+    headless.assert_exact(&scene, ROUNDED);
     headless.sort();
     let bevys = OrderIndependentTransparencySettings::default();
     headless.camera().insert(bevys);
     // Bevy keeps opacities in 8 bits.
-    assert!(headless.errors(&scene).max <= 3.0 * ROUNDED);
-    headless
-        .camera()
-        .remove::<OrderIndependentTransparencySettings>();
+    headless.assert_exact(&scene, 3.0 * ROUNDED);
+    let mut camera = headless.camera();
+    camera.remove::<OrderIndependentTransparencySettings>();
     assert!(headless.picture() == first);
 }
 
@@ -197,20 +186,20 @@ fn cards_come_and_go() {
     let scene = cards::two();
     let mut headless = medium(&[]);
     let entities = cards::spawn(&mut headless.app, &scene);
-    assert!(headless.errors(&scene).max <= ROUNDED);
+    headless.assert_exact(&scene, ROUNDED);
     headless.app.world_mut().despawn(entities[0]);
-    assert!(headless.errors(&scene[1..]).max <= ROUNDED);
+    headless.assert_exact(&scene[1..], ROUNDED);
     let second = |headless: &mut Headless, visibility, transform| {
         let mut second = headless.app.world_mut().entity_mut(entities[1]);
         second.insert((visibility, transform));
     };
     let transform = Transform::from_xyz(0.0, 0.5, 0.0);
     second(&mut headless, Visibility::Hidden, transform);
-    assert!(headless.errors(&[]).max <= ROUNDED);
+    headless.assert_exact(&[], ROUNDED);
     second(&mut headless, Visibility::Visible, transform);
     let moved = Card {
         transform,
         ..scene[1]
     };
-    assert!(headless.errors(&[moved]).max <= ROUNDED);
+    headless.assert_exact(&[moved], ROUNDED);
 }

@@ -21,9 +21,7 @@ use support::{cards, headless::Headless};
 const SIZE: UVec2 = UVec2::new(128, 96);
 
 fn crossing(plugin: impl Into<PeelnetPlugin>, settings: WgpuSettings) -> Headless {
-    let mut headless = Headless::with_settings(SIZE, Msaa::Off, plugin.into(), settings);
-    cards::spawn(&mut headless.app, &cards::crossing());
-    headless
+    Headless::with_settings(SIZE, Msaa::Off, plugin, &cards::crossing(), settings)
 }
 
 /// The picture stays as it is without learned transparency, and one message says all of this.
@@ -32,25 +30,14 @@ fn assert_refused(mut headless: Headless, frames: u32, gravity: Gravity, says: &
     let mut headless = headless.learned();
     headless.run(frames);
     assert!(headless.picture() == bevys);
-    assert_said(&headless, gravity, says);
-}
-
-fn assert_said(headless: &Headless, gravity: Gravity, says: &[&str]) {
-    let said = headless.messages();
-    assert_eq!(said.len(), 1, "{said:?}");
-    assert_eq!(said[0].0, gravity, "{said:?}");
-    let all = says.iter().all(|text| said[0].1.contains(text));
-    assert!(all, "{said:?}");
+    headless.assert_said(gravity, says);
 }
 
 #[test]
 fn networks_of_another_version_or_recipe() {
+    let of_version = ["peelnet-export 7", "export the network again"];
     for (name, version, says) in [
-        (
-            "medium",
-            7,
-            &["peelnet-export 7", "export the network again"][..],
-        ),
+        ("medium", 7, &of_version[..]),
         ("thesis", 1, &["\"thesis\""]),
     ] {
         let shipped = peelnet_shipped_networks::find(name).expect("ships");
@@ -129,20 +116,16 @@ fn a_lost_device_is_replaced_where_the_application_asks_for_it() {
         .expect("reports the loss");
     let after = headless.picture();
     assert!(before == after);
-    assert_said(&headless, Gravity::Info, &["replaced the graphics device"]);
+    headless.assert_said(Gravity::Info, &["replaced the graphics device"]);
 }
 
 #[test]
-fn files_that_are_not_there_are_named() {
-    let error = PeelnetModel::load("no/such/folder").expect_err("is refused");
-    assert!(error.to_string().contains("model.wgsl"), "{error}");
-}
-
-#[test]
-fn the_shipped_folders_can_be_loaded() {
+fn folders_of_networks() {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../models/");
     for recipe in "small medium large anchored-small anchored-medium nmt".split(' ') {
         let model = PeelnetModel::load(format!("{folder}{recipe}")).expect("loads");
         assert_eq!(model.recipe(), recipe);
     }
+    let error = PeelnetModel::load("no/such/folder").expect_err("is refused");
+    assert!(error.to_string().contains("model.wgsl"), "{error}");
 }

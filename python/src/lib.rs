@@ -21,21 +21,16 @@ use pyo3::prelude::*;
 #[pymodule]
 mod _native {
     #[pymodule_export]
-    use crate::bench::{Choice, Recommendation, bench, recommend};
-    #[pymodule_export]
-    use crate::failure::PeelnetError;
-    #[pymodule_export]
-    use crate::gpu::adapter_name;
-    #[pymodule_export]
-    use crate::model::{Model, export};
-    #[pymodule_export]
-    use crate::render::{methods, render};
-    #[pymodule_export]
-    use crate::rows::{Dataset, Rows, extract_rows, seal};
-    #[pymodule_export]
-    use crate::scene::{Camera, Scene, samples};
-    #[pymodule_export]
-    use crate::train::{Epoch, Training, train};
+    use crate::{
+        bench::{Choice, Recommendation, bench, recommend},
+        failure::PeelnetError,
+        gpu::adapter_name,
+        model::{Model, export},
+        render::{methods, render},
+        rows::{Dataset, Rows, extract_rows, seal},
+        scene::{Camera, Scene, samples},
+        train::{Epoch, Training, train},
+    };
     #[pymodule_export]
     #[allow(non_upper_case_globals, reason = "Python's name")]
     const __version__: &str = env!("CARGO_PKG_VERSION");

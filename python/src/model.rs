@@ -2,13 +2,13 @@
 
 use crate::{
     argument::{FromFile, load},
-    failure::{failed, raised, wrong},
+    failure::{raised, wrong},
     gpu, json,
     watch::{Reporter, watch},
 };
 use numpy::{
-    IntoPyArray as _, PyArray2, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods as _,
-    ndarray::{Array1, Array2},
+    IntoPyArray as _, PyArray2, PyArrayMethods as _, PyReadonlyArray1, PyReadonlyArray2,
+    PyUntypedArrayMethods as _,
 };
 use peelnet::{
     LANGUAGES, PRECISIONS,
@@ -111,12 +111,11 @@ impl Model {
     fn weights<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let weights = PyDict::new(py);
         for (i, layer) in self.0.mlp.layers.iter().enumerate() {
-            let shape = (layer.outputs, layer.inputs);
-            let matrix = Array2::from_shape_vec(shape, layer.weights.clone());
-            let matrix = matrix.map_err(|e| failed(e.to_string()))?;
-            weights.set_item(format!("layers.{i}.weight"), matrix.into_pyarray(py))?;
-            let bias = Array1::from(layer.bias.clone());
-            weights.set_item(format!("layers.{i}.bias"), bias.into_pyarray(py))?;
+            let matrix = layer.weights.clone().into_pyarray(py);
+            let matrix = matrix.reshape([layer.outputs, layer.inputs])?;
+            weights.set_item(format!("layers.{i}.weight"), matrix)?;
+            let bias = layer.bias.clone().into_pyarray(py);
+            weights.set_item(format!("layers.{i}.bias"), bias)?;
         }
         Ok(weights)
     }
@@ -155,8 +154,8 @@ impl Model {
             }
             answers
         });
-        let answers = Array2::from_shape_vec((rows, self.0.mlp.outputs()), answers);
-        Ok(answers.map_err(|e| failed(e.to_string()))?.into_pyarray(py))
+        let answers = answers.into_pyarray(py);
+        answers.reshape([rows, self.0.mlp.outputs()])
     }
 
     /// How the network is built: the recipe's name.

@@ -2,13 +2,13 @@
 
 use crate::{
     argument::load,
-    failure::{failed, raised, warn, wrong},
+    failure::{raised, warn, wrong},
     gpu,
     model::Model,
     scene::{Camera, Scene},
     watch::{Reporter, watch},
 };
-use numpy::{IntoPyArray as _, PyArray3, ndarray::Array3};
+use numpy::{IntoPyArray as _, PyArrayMethods as _};
 use peelnet::{
     Failure, MethodOptions, MethodSpec, Renderer, model_for,
     render::{Frame, METHODS},
@@ -101,22 +101,11 @@ pub fn render<'py>(
     for warning in frame.warnings() {
         warn(py, &format!("{spec}: {warning}"))?;
     }
-    let shape = (size[1] as usize, size[0] as usize, 4);
-    array(py, shape, frame.image, dtype)
-}
-
-fn array<'py>(
-    py: Python<'py>,
-    shape: (usize, usize, usize),
-    image: peelnet::render::Image,
-    dtype: &str,
-) -> PyResult<Bound<'py, PyAny>> {
-    let wrong_shape = |e: numpy::ndarray::ShapeError| failed(e.to_string());
+    let (shape, image) = ([size[1] as usize, size[0] as usize, 4], frame.image);
     if dtype == "float32" {
         // The renderer's memory becomes numpy's.
-        let array = Array3::from_shape_vec(shape, image.pixels.into_flattened());
-        let array: Bound<'py, PyArray3<f32>> = array.map_err(wrong_shape)?.into_pyarray(py);
-        return Ok(array.into_any());
+        let array = image.pixels.into_flattened().into_pyarray(py);
+        return Ok(array.reshape(shape)?.into_any());
     }
     let rgb = image.to_srgb8();
     let (colors, _) = rgb.as_chunks::<3>();
@@ -127,8 +116,7 @@ fn array<'py>(
             [*r, *g, *b, (pixel[3].clamp(0.0, 1.0) * 255.0).round() as u8]
         })
         .collect();
-    let array = Array3::from_shape_vec(shape, bytes).map_err(wrong_shape)?;
-    Ok(array.into_pyarray(py).into_any())
+    Ok(bytes.into_pyarray(py).reshape(shape)?.into_any())
 }
 
 /// The names of all methods, which `render` and `bench` take; of those with a number in their name (`kbuffer-8`) one setting.

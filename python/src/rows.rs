@@ -26,7 +26,7 @@ use pyo3::{
     types::{PyCapsule, PyDict},
 };
 use std::{
-    path::PathBuf,
+    path::{Path, PathBuf},
     sync::{
         Arc,
         atomic::{AtomicBool, Ordering},
@@ -152,15 +152,7 @@ impl Rows {
 #[pyclass(frozen, module = "peelnet")]
 #[derive(Clone)]
 pub struct Dataset {
-    path: PathBuf,
     pub dataset: dataset::Dataset,
-}
-
-impl Dataset {
-    fn open(path: PathBuf) -> PyResult<Self> {
-        let dataset = dataset::Dataset::open(&path).map_err(raised)?;
-        Ok(Self { path, dataset })
-    }
 }
 
 #[pymethods]
@@ -172,8 +164,8 @@ impl Dataset {
 
     /// The folder.
     #[getter]
-    fn path(&self) -> &PathBuf {
-        &self.path
+    fn path(&self) -> &Path {
+        self.dataset.path()
     }
 
     /// Hash over all parts: the same for the same rows in the same format, however they were sharded.
@@ -222,7 +214,7 @@ impl Dataset {
         let rows = thousands(self.dataset.rows());
         format!(
             "Dataset({}: {rows} rows)",
-            peelnet_core::files::shown(&self.path)
+            peelnet_core::files::shown(self.dataset.path())
         )
     }
 }
@@ -362,7 +354,7 @@ pub fn extract_rows<'py>(
             if !report.manifest.is_whole() {
                 return Ok(py.None().into_bound(py));
             }
-            let dataset = py.detach(|| Dataset::open(options.out))?;
+            let dataset = Dataset::from_file(py, options.out)?;
             Ok(Bound::new(py, dataset)?.into_any())
         }
     }
@@ -377,16 +369,15 @@ pub fn extract_rows<'py>(
 ///     The Dataset.
 #[pyfunction]
 pub fn seal(py: Python<'_>, path: PathBuf) -> PyResult<Dataset> {
-    py.detach(|| {
-        dataset::seal(&path).map_err(raised)?;
-        Dataset::open(path)
-    })
+    py.detach(|| dataset::seal(&path)).map_err(raised)?;
+    Dataset::from_file(py, path)
 }
 
 impl FromFile for Dataset {
     const IS: &str = "data is a Dataset or a dataset's folder: extract(…, out=folder) makes one";
 
     fn from_file(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
-        py.detach(|| Self::open(path))
+        let dataset = py.detach(|| dataset::Dataset::open(path));
+        dataset.map(|dataset| Self { dataset }).map_err(raised)
     }
 }

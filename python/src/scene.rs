@@ -2,7 +2,7 @@ use crate::{
     argument::{FromFile, load_all},
     failure::{raised, warn, wrong},
 };
-use peelnet::scene::suite;
+use peelnet::scene::{SceneError, suite};
 use pyo3::prelude::*;
 use std::{
     collections::HashMap,
@@ -103,24 +103,8 @@ impl Camera {
     }
 }
 
-/// Where a scene came from, to load it again at another time.
-#[derive(Clone)]
-enum Origin {
-    Path(PathBuf),
-    Bytes(PathBuf, Arc<HashMap<PathBuf, Vec<u8>>>),
-}
-
-impl Origin {
-    fn load(&self, time: Option<f32>) -> Result<peelnet::Scene, peelnet::scene::SceneError> {
-        match self {
-            Self::Path(path) => suite::open(path, time),
-            Self::Bytes(name, files) => peelnet::Scene::from_bytes_at(name, time, |path: &Path| {
-                let found = files.get(path).cloned();
-                found.ok_or_else(|| io::ErrorKind::NotFound.into())
-            }),
-        }
-    }
-}
+/// Loads a scene at a time of its timeline.
+type Load = dyn Fn(Option<f32>) -> Result<peelnet::Scene, SceneError> + Send + Sync;
 
 /// A scene: triangles, materials, lights and views.
 ///
@@ -133,18 +117,18 @@ impl Origin {
 #[derive(Clone)]
 pub struct Scene {
     pub scene: Arc<peelnet::Scene>,
-    origin: Origin,
+    load: Arc<Load>,
 }
 
 impl Scene {
-    fn load_from(py: Python<'_>, origin: Origin, time: Option<f32>) -> PyResult<Self> {
-        let scene = py.detach(|| origin.load(time)).map_err(raised)?;
+    fn loaded_by(load: Arc<Load>, py: Python<'_>, time: Option<f32>) -> PyResult<Self> {
+        let scene = py.detach(|| load(time)).map_err(raised)?;
         for warning in &scene.warnings {
             warn(py, warning)?;
         }
         Ok(Self {
             scene: Arc::new(scene),
-            origin,
+            load,
         })
     }
 }
@@ -154,7 +138,7 @@ impl Scene {
     #[new]
     #[pyo3(signature = (path, *, time=None))]
     fn new(py: Python<'_>, path: PathBuf, time: Option<f32>) -> PyResult<Self> {
-        Self::load_from(py, Origin::Path(path), time)
+        Self::loaded_by(Arc::new(move |time| suite::open(&path, time)), py, time)
     }
 
     /// Reads a scene from bytes.
@@ -179,12 +163,18 @@ impl Scene {
             .map(|(path, data)| (folder.join(path), data))
             .collect();
         files.insert(name.clone(), data);
-        Self::load_from(py, Origin::Bytes(name, Arc::new(files)), time)
+        let load = move |time| {
+            peelnet::Scene::from_bytes_at(&name, time, |path: &Path| {
+                let found = files.get(path).cloned();
+                found.ok_or_else(|| io::ErrorKind::NotFound.into())
+            })
+        };
+        Self::loaded_by(Arc::new(load), py, time)
     }
 
     /// The same scene at a time of its timeline.
     pub fn at(&self, py: Python<'_>, time: f32) -> PyResult<Self> {
-        Self::load_from(py, self.origin.clone(), Some(time))
+        Self::loaded_by(Arc::clone(&self.load), py, Some(time))
     }
 
     /// The scene's name; rows and results are identified by it.
@@ -249,7 +239,7 @@ impl FromFile for Scene {
     const IS: &str = "a scene is a Scene, a path, or the name of a shipped scene";
 
     fn from_file(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
-        Self::load_from(py, Origin::Path(path), None)
+        Self::new(py, path, None)
     }
 }
 

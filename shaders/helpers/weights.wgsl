@@ -1,4 +1,5 @@
 // Published weights (McGuire & Bavoil 2013, eq 7-10; Papakostas 2022); as peelnet_core::weights.
+// Loops: 1: the parameter k, at most 16.
 fn weight_eq7(z: f32, alpha: f32) -> f32 {
     let a = z / 5.0;
     let b = z / 200.0;

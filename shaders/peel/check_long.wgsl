@@ -1,4 +1,5 @@
 // S-buffer: whether every long run is sorted. Keys differ, so an order that ascends strictly within its run's slots names each slot once.
+// Loops: 1: WINDOW slots.
 import package::peel::faults::Faults;
 import package::peel::long_runs::{chunk_of, depths, triangles, windows};
 

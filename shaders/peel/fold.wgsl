@@ -1,4 +1,5 @@
 // Composites a piece of every run that has another piece behind it. `step` counts pieces: one dispatch for each.
+// Loops: 1: PIECE fragments.
 // Variants: long abuffer | long abuffer tinted | long surfaces | long layers | long layers increasing | long layers printed | long layers increasing printed
 @if(abuffer) import package::methods::abuffer::composite::{begun, carry_on, resumed, with_fragment};
 @if(layers) import package::passes::layers::composite::{begun, carry_on, resumed, with_fragment};

@@ -1,5 +1,6 @@
 // S-buffer, long runs, step 2: sorts every chunk. A fragment's place is the number of those that come before it, four fragments at a time:
 // every thread of a group does the same number of comparisons, in registers, whatever the order.
+// Loops: 2: WINDOW slots.
 import package::peel::long_runs::{Chunk, chunk_of, depths, triangles, windows};
 
 @group(0) @binding(5) var<storage, read_write> order: array<u32>;

@@ -1,6 +1,7 @@
 // S-buffer, long runs, step 3, once for every doubling of the sorted length: merges neighbours of `sorted_length` slots.
 //
 // A thread writes a chunk of what is merged. Where its inputs begin, a binary search along a diagonal finds (merge path, Odeh et al. 2012).
+// Loops: 2: WINDOW slots; a binary search over 22 bits.
 import package::peel::long_runs::{Chunk, before, chunk_of, depths, triangles, windows};
 
 // x: the sorted length.

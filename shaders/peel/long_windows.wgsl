@@ -1,4 +1,5 @@
 // S-buffer, long runs, step 1: which long runs each window touches.
+// Loops: 1: a binary search over 32 bits.
 import package::peel::long_runs::{NO_PIXEL, WINDOW, is_long, slot_of, tile, windows};
 
 // The pixel whose run holds a slot. Halves at most 32 times.

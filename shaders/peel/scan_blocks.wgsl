@@ -1,4 +1,5 @@
 // Prefix sum, step 1: the sum and the maximum of each block of counts.
+// Loops: 1: BLOCK pixels.
 struct Extent {
     // x: number of pixels, y: number of blocks, z: groups along x of this dispatch.
     size: vec4u,

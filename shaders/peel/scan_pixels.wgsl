@@ -1,4 +1,5 @@
 // Prefix sum, step 3: every pixel's offset; entry n is the total.
+// Loops: 1: BLOCK pixels.
 import package::peel::scan_blocks::Extent;
 
 @group(0) @binding(0) var<uniform> extent: Extent;

@@ -1,4 +1,5 @@
 // Prefix sum, step 2: turns the blocks' sums into their offsets, one workgroup; writes the total in 64 bits and the largest count.
+// Loops: 3: LANES; blocks of a frame by LANES, 16,384 of 2^28 pixels.
 import package::peel::scan_blocks::Extent;
 
 @group(0) @binding(0) var<uniform> extent: Extent;

@@ -15,8 +15,8 @@ import package::scene::visible::visible;
 @group(1) @binding(0) var last: texture_2d<u32>;
 
 struct Peeled {
-    @location(0) color: vec4f,
-    @location(1) key: vec2u,
+    @location(1) color: vec4f,
+    @location(0) key: vec2u,
     @builtin(frag_depth) depth: f32,
 }
 

@@ -2,6 +2,7 @@
 //
 // Shell sort (Shell 1959, gaps of Ciura 2001): in place, no recursion, insertion sort for the few fragments that
 // almost all pixels have.
+// Loops: 5: SHORT fragments, and the gaps of their sort.
 // Variants: none | tinted | long | tinted long
 import package::parameters::SHORT;
 import package::peel::faults::Faults;

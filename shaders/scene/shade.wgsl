@@ -1,5 +1,6 @@
 // Radiance and opacity of a surface. Which of it exists is decided when a shader is linked, by what the scene's materials and
 // lights need. The CPU reference is peelnet_core::shading.
+// Loops: 2: peelnet_scene::MAX_LIGHTS.
 import package::scene::camera::camera;
 @if(emission || transmission) import package::helpers::guards::EMISSIVE_ALPHA;
 @if(color_map) import package::scene::maps::color_at;

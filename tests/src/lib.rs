@@ -67,6 +67,13 @@ pub fn prepare(renderer: &Renderer, method: impl Display, size: [u32; 2]) -> Pre
     prepared.unwrap_or_else(|e| panic!("{method}: {e}"))
 }
 
+/// It is refused, in these words.
+pub fn assert_refused<T>(refused: Result<T, impl Display>, words: &[&str]) {
+    let error = refused.err().map(|e| e.to_string()).unwrap_or_default();
+    let says = words.iter().all(|word| error.contains(word));
+    assert!(says, "'{error}' for {words:?}");
+}
+
 /// No colour channel of a pixel is farther off than the bound.
 pub fn assert_near<const N: usize>(
     found: [f32; 4],
@@ -94,6 +101,14 @@ pub fn assert_alike(found: &[[f32; 4]], want: &[[f32; 4]], bound: f32, what: imp
 
 pub fn even(texel: [u8; 4]) -> Option<Arc<Texture>> {
     Some(Arc::new(Texture::of("even", [4, 4], |_, _| texel)))
+}
+
+/// A surface that hides what lies behind it.
+pub fn opaque(color: [f32; 3]) -> Material {
+    Material {
+        blend: false,
+        ..Material::unlit(color, 1.0)
+    }
 }
 
 pub fn light(position: Vec3, color: [f32; 3]) -> Light {

@@ -9,7 +9,7 @@ use peelnet_scene::Scene;
 use std::{
     fs,
     path::{Path, PathBuf},
-    sync::{OnceLock, atomic::AtomicBool},
+    sync::{LazyLock, atomic::AtomicBool},
 };
 use tempfile::TempDir;
 
@@ -42,23 +42,19 @@ fn committed(name: &str) -> Vec<Vec<u8>> {
     paths.into_iter().map(read).collect()
 }
 
-/// A folder of this process that is removed with it. Of the files that a scene or a mesh may name it has `a.obj` and `a.png`.
-fn folder() -> &'static Path {
-    static FOLDER: OnceLock<TempDir> = OnceLock::new();
-    let folder = FOLDER.get_or_init(|| {
-        let folder = tempfile::tempdir().expect("a temporary folder");
-        let triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n";
-        fs::write(folder.path().join("a.obj"), triangle).expect("writes");
-        let texels = [[255, 0, 0, 128], [0, 255, 0, 255]].concat();
-        let image = image::RgbaImage::from_raw(2, 1, texels).expect("two texels");
-        image.save(folder.path().join("a.png")).expect("encodes");
-        folder
-    });
-    folder.path()
-}
+/// A folder of this process. Of the files that a scene or a mesh may name it has `a.obj` and `a.png`.
+static FOLDER: LazyLock<TempDir> = LazyLock::new(|| {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n";
+    fs::write(folder.path().join("a.obj"), triangle).expect("writes");
+    let texels = [[255, 0, 0, 128], [0, 255, 0, 255]].concat();
+    let image = image::RgbaImage::from_raw(2, 1, texels).expect("two texels");
+    image.save(folder.path().join("a.png")).expect("encodes");
+    folder
+});
 
 fn put(name: &str, bytes: &[u8]) -> PathBuf {
-    let path = folder().join(name);
+    let path = FOLDER.path().join(name);
     fs::write(&path, bytes).expect("the temporary folder can be written");
     path
 }
@@ -109,18 +105,16 @@ const MANIFEST: &str = "_peelnet/manifest.json";
 /// A dataset of two parts: the first byte says which of its files the others replace, and in which format.
 fn dataset(bytes: &[u8]) {
     let (&which, contents) = bytes.split_first().unwrap_or((&0, &[]));
-    let kind = usize::from(which) % 3;
-    let files = template(kind);
+    let (folder, files) = &TEMPLATES[usize::from(which) % 3];
     let (name, sound) = &files[usize::from(which / 3) % files.len()];
     let (_, manifest) = &files[0];
-    let folder = template_folder(kind);
     let write = |name: &str, bytes: &[u8]| fs::write(folder.join(name), bytes).expect("writes");
     // So that the length fits, and the contents are looked at.
     let [from, to] = [sound.len(), contents.len()].map(|n| format!("\"bytes\": {n}"));
     let adapted = String::from_utf8_lossy(manifest).replace(&from, &to);
     write(MANIFEST, adapted.as_bytes());
     write(name, contents);
-    if let Ok(dataset) = Dataset::open(&folder) {
+    if let Ok(dataset) = Dataset::open(folder) {
         // Either all rows are read, or an error ends them.
         let rows: Result<Vec<usize>, _> = dataset.batches(64).map(|b| b.map(|b| b.len())).collect();
         if let Ok(rows) = rows {
@@ -133,28 +127,21 @@ fn dataset(bytes: &[u8]) {
 
 fn dataset_seeds() -> Vec<Vec<u8>> {
     let mut seeds = Vec::new();
-    for k in 0u8..3 {
-        for ((_, contents), file) in template(usize::from(k)).iter().zip(0u8..3) {
+    for ((_, files), k) in TEMPLATES.iter().zip(0u8..) {
+        for ((_, contents), file) in files.iter().zip(0u8..3) {
             seeds.push([&[k + 3 * file], contents.as_slice()].concat());
         }
     }
     seeds
 }
 
-const FORMATS: [Format; 3] = [Format::Csv, Format::Npy, Format::Parquet];
+/// A dataset's folder and its files; the manifest first.
+type Template = (PathBuf, Vec<(String, Vec<u8>)>);
 
-fn template_folder(kind: usize) -> PathBuf {
-    folder().join(format!("template-{}", FORMATS[kind]))
-}
-
-type Files = Vec<(String, Vec<u8>)>;
-
-/// The files of a small dataset of one of these formats; the manifest first.
-fn template(kind: usize) -> &'static Files {
-    static TEMPLATES: [OnceLock<Files>; 3] = [const { OnceLock::new() }; 3];
-    TEMPLATES[kind].get_or_init(|| {
-        let format = FORMATS[kind];
-        let out = template_folder(kind);
+/// A small dataset of each format.
+static TEMPLATES: LazyLock<[Template; 3]> = LazyLock::new(|| {
+    [Format::Csv, Format::Npy, Format::Parquet].map(|format| {
+        let out = FOLDER.path().join(format!("template-{format}"));
         let options = ExtractOptions {
             format,
             seed: 3,
@@ -170,9 +157,10 @@ fn template(kind: usize) -> &'static Files {
             let bytes = fs::read(out.join(&name)).expect("reads");
             (name, bytes)
         };
-        names.into_iter().map(read).collect()
+        let files = names.into_iter().map(read).collect();
+        (out, files)
     })
-}
+});
 
 fn model(bytes: &[u8]) {
     if let Ok(model) = Model::from_bytes(bytes, "m.safetensors") {

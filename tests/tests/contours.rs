@@ -9,7 +9,7 @@ use peelnet_bench::{
 use peelnet_render::Renderer;
 use peelnet_render::gpu::Gpu;
 use peelnet_scene::{Material, Object};
-use peelnet_tests::{even, gpu, object, quad, scene, specs};
+use peelnet_tests::{even, gpu, object, opaque, quad, scene, specs};
 use std::sync::Arc;
 
 const SIDE: u32 = 16;
@@ -107,9 +107,7 @@ fn opacity_does_not_count_and_holes_do() {
     let through = vec![object(&whole, glass()), wall];
     assert_eq!(pairs(&gpu, through, 1), inside(ALL, ALL));
     // An opaque wall in front of the left half.
-    let mut opaque = Material::unlit([1.0; 3], 1.0);
-    opaque.blend = false;
-    let front = object(&pane([1.0; 2], [0.0, 8.0], FRAME), opaque);
+    let front = object(&pane([1.0; 2], [0.0, 8.0], FRAME), opaque([1.0; 3]));
     let hidden = vec![object(&whole, glass()), front];
     assert_eq!(pairs(&gpu, hidden, 1), inside(8, ALL));
 }

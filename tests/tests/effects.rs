@@ -5,7 +5,7 @@ use peelnet_render::Renderer;
 use peelnet_scene::{
     EFFECTS, Effect, Light, Lighting, Material, MaterialFlags, Scene, SceneFeatures, Source,
 };
-use peelnet_tests::{assert_alike, draw, even, gpu, light, prepare, scene, wall};
+use peelnet_tests::{assert_alike, draw, even, gpu, light, opaque, prepare, scene, wall};
 use std::sync::Arc;
 
 /// The effect that another one needs, so that it shows.
@@ -16,13 +16,6 @@ fn needs(effect: &Effect) -> Option<&'static Effect> {
         "emissive-map" => Effect::find("emission"),
         _ if effect.flag.needs_light() => Effect::find("lighting"),
         _ => None,
-    }
-}
-
-fn opaque(color: [f32; 3]) -> Material {
-    Material {
-        blend: false,
-        ..Material::unlit(color, 1.0)
     }
 }
 

@@ -4,44 +4,26 @@ use std::sync::Arc;
 
 use glam::{Mat4, Vec3};
 use peelnet_core::fragment::{Fragment, worked_example};
-use peelnet_render::gpu::{Gpu, GpuError, wgpu};
+use peelnet_render::geometry::frame::{attachment, clear_color};
+use peelnet_render::gpu::{Gpu, GpuError, record::Recorder, wgpu};
 use peelnet_render::{
     FrameStatus, Image, MethodOptions, MethodSpec, Prepared, RenderError, Renderer, Target,
 };
 use peelnet_scene::{Camera, Light, Lighting, Material, Object, Scene, Source};
 use peelnet_tests::{
-    assert_alike, assert_all, gpu, light, object, prepare, representatives, scene, wall, walls,
-    window_depth,
+    assert_alike, assert_all, assert_refused, gpu, light, object, opaque, prepare, representatives,
+    scene, wall, walls, window_depth,
 };
 
 /// Submits a pass that draws nothing.
-fn submit_pass(gpu: &Gpu, pass: &wgpu::RenderPassDescriptor<'_>) {
-    let mut encoder = gpu.encoder();
-    drop(encoder.begin_render_pass(pass));
-    gpu.queue.submit([encoder.finish()]);
-}
-
-/// Submits a pass over a texture that draws nothing, and resolves its samples.
-fn submit_color_pass(
+fn submit_pass(
     gpu: &Gpu,
-    view: &wgpu::TextureView,
-    resolve_target: Option<&wgpu::TextureView>,
-    load: wgpu::LoadOp<wgpu::Color>,
+    colors: &[Option<wgpu::RenderPassColorAttachment<'_>>],
+    depth: Option<wgpu::RenderPassDepthStencilAttachment<'_>>,
 ) {
-    let attachment = wgpu::RenderPassColorAttachment {
-        view,
-        depth_slice: None,
-        resolve_target,
-        ops: wgpu::Operations {
-            load,
-            store: wgpu::StoreOp::Store,
-        },
-    };
-    let pass = wgpu::RenderPassDescriptor {
-        color_attachments: &[Some(attachment)],
-        ..Default::default()
-    };
-    submit_pass(gpu, &pass);
+    let mut encoder = gpu.encoder();
+    drop(Recorder::new(gpu, &mut encoder, None).render("nothing", colors, depth));
+    gpu.queue.submit([encoder.finish()]);
 }
 
 /// A texture to draw onto, cleared to a colour.
@@ -55,8 +37,7 @@ fn target(
     let none = wgpu::TextureUsages::empty();
     let view = gpu.texture("target", format, size, samples, none).unwrap();
     let [r, g, b] = color.map(f64::from);
-    let clear = wgpu::LoadOp::Clear(wgpu::Color { r, g, b, a: 1.0 });
-    submit_color_pass(gpu, &view, None, clear);
+    submit_pass(gpu, &[clear_color(&view, [r, g, b, 1.0])], None);
     view
 }
 
@@ -67,18 +48,15 @@ fn depth_buffer(gpu: &Gpu, size: [u32; 2], samples: u32, z: f32) -> wgpu::Textur
     let none = wgpu::TextureUsages::empty();
     let format = wgpu::TextureFormat::Depth32Float;
     let view = gpu.texture("depth", format, size, samples, none).unwrap();
-    let pass = wgpu::RenderPassDescriptor {
-        depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-            view: &view,
-            depth_ops: Some(wgpu::Operations {
-                load: wgpu::LoadOp::Clear(window_depth(z)),
-                store: wgpu::StoreOp::Store,
-            }),
-            stencil_ops: None,
+    let cleared = wgpu::RenderPassDepthStencilAttachment {
+        view: &view,
+        depth_ops: Some(wgpu::Operations {
+            load: wgpu::LoadOp::Clear(window_depth(z)),
+            store: wgpu::StoreOp::Store,
         }),
-        ..Default::default()
+        stencil_ops: None,
     };
-    submit_pass(gpu, &pass);
+    submit_pass(gpu, &[], Some(cleared));
     view
 }
 
@@ -132,9 +110,7 @@ fn every_method_draws_over_what_a_target_holds() {
     let size = [7, 5];
     let behind = [0.1, 0.2, 0.9];
     let mut objects = walls(&worked_example(), behind).objects;
-    let mut opaque = Material::unlit([0.3, 0.6, 0.1], 1.0);
-    opaque.blend = false;
-    objects.push(wall(5.0, opaque));
+    objects.push(wall(5.0, opaque([0.3, 0.6, 0.1])));
     // In a corner of the frame only.
     let corner = objects.len() - 1;
     objects[corner].world_from_object = Mat4::from_translation(Vec3::new(6.0, 6.0, 0.0));
@@ -298,7 +274,9 @@ fn a_callers_depth_hides() {
             let mut shown = &color;
             if samples > 1 {
                 // The mean of the samples.
-                submit_color_pass(&gpu, &color, Some(&single), wgpu::LoadOp::Load);
+                let mut samples = attachment(&color, wgpu::LoadOp::Load).unwrap();
+                samples.resolve_target = Some(&single);
+                submit_pass(&gpu, &[Some(samples)], None);
                 shown = &single;
             }
             let texels: Vec<[u16; 4]> = gpu.read_texture(shown).unwrap();
@@ -439,12 +417,10 @@ fn an_applications_own_device() {
     let view = target(&gpu, FULL, [4, 4], 1, [0.0; 3]);
     let over = Target::over(&view);
     let refused = renderer.draw(&mut gpu.encoder(), &mut method, &scene.views[0], &over);
-    let message = refused.unwrap_err().to_string();
-    assert!(message.contains("Rgba32Float"), "{message}");
+    assert_refused(refused, &["Rgba32Float"]);
     let dual_peel = "dual-peel".parse().unwrap();
     let refused = renderer.method(&dual_peel, MethodOptions::sized([4, 4]));
-    let message = refused.unwrap_err().to_string();
-    assert!(message.contains("float32-blendable"), "{message}");
+    assert_refused(refused, &["float32-blendable"]);
 }
 
 /// What can be drawn can be moved to another thread, and a scene shared with it.

@@ -11,12 +11,12 @@ use peelnet_core::{
     random::Random,
 };
 use peelnet_render::{
-    METHODS, MethodOptions, MethodSpec, Renderer,
+    METHODS, MethodSpec, Renderer,
     methods::{Pixel, Precision},
 };
 use peelnet_scene::{Material, Scene};
 use peelnet_tests::{
-    gpu, half_sums, network_of, object, quad, representatives, scene, window_depth,
+    gpu, half_sums, network_of, object, prepare, quad, representatives, scene, window_depth,
 };
 
 /// Bound for moments in 32 bits against 64. Of four, where layers are apart, they err by some roundings; of more, points are cosines and
@@ -157,8 +157,7 @@ impl Frame {
     fn problems(&self, renderer: &Renderer, spec: &MethodSpec, moments: f32) -> Vec<String> {
         let view = &self.scene.views[0];
         let model = network_of(spec).map(|(_, model)| model);
-        let options = MethodOptions::sized(self.size);
-        let mut prepared = renderer.method(spec, options).unwrap();
+        let mut prepared = prepare(renderer, spec, self.size);
         let frame = renderer.image(&mut prepared, view).unwrap();
         let mut problems = Vec::new();
         // A peel that is capped counts what it leaves out.

@@ -105,7 +105,7 @@ fn stored_colors_come_back_within_half_a_step() {
     // Roots and squares in 32 bits.
     const ROUNDING: f32 = 8.0 * f32::EPSILON;
     let gpu = gpu();
-    let mut random = peelnet_core::random::Random::new(24, &[]);
+    let mut random = Random::new(24, &[]);
     let mut inputs: Vec<[f32; 4]> = (0..2000)
         .map(|_| [(); 4].map(|()| random.unit() * random.unit()))
         .collect();
@@ -227,11 +227,8 @@ fn features_are_the_same_in_rust_and_wgsl() {
                     .iter()
                     .flat_map(|pixel| pixel.iter().map(|f| deep::Row::new(f, pixel))),
                 |row| {
-                    vec![
-                        row.linear_depth.into(),
-                        row.alpha_sum.into(),
-                        row.fragment_count.into(),
-                    ]
+                    let row = [row.linear_depth, row.alpha_sum, row.fragment_count];
+                    row.map(f64::from).to_vec()
                 },
                 "let linear_depth = x0; let statistics = vec2f(x1, x2);",
             );
@@ -272,16 +269,8 @@ fn features_are_the_same_in_rust_and_wgsl() {
                     .flat_map(|list| anchored::known_fragments(list, &warp, exact))
                     .filter_map(|f| f.unknown),
                 |rest| {
-                    let [m1, m2, m3, m4] = rest.means;
-                    vec![
-                        rest.absorbance.sqrt(),
-                        rest.place,
-                        m1,
-                        m2,
-                        m3,
-                        m4,
-                        rest.bias,
-                    ]
+                    let place = [rest.absorbance.sqrt(), rest.place];
+                    [&place[..], &rest.means, &[rest.bias]].concat()
                 },
                 "let rest = PeelnetRest(x0, x1, vec4f(x2, x3, x4, x5), x6);",
             );
@@ -294,17 +283,9 @@ fn features_are_the_same_in_rust_and_wgsl() {
                     .flat_map(|list| slabs::known_fragments(list, &warp, of.design, exact))
                     .filter_map(|f| f.unknown),
                 |b| {
-                    let [low, high] = b.bounds;
-                    vec![
-                        b.absorbance,
-                        b.place,
-                        b.mean,
-                        low,
-                        high,
-                        b.extent,
-                        b.own,
-                        b.nearest,
-                    ]
+                    let sums = [b.absorbance, b.place, b.mean];
+                    let rest = [b.extent, b.own, b.nearest];
+                    [&sums[..], &b.bounds, &rest].concat()
                 },
                 "let between = PeelnetBetween(x0, x1, x2, x3, x4, x5, x6, x7);",
             );

@@ -16,12 +16,11 @@ pub const BACKGROUND: LinearRgba = LinearRgba::new(0.25, 0.5, 0.75, 1.0);
 /// Where the camera of all scenes stands. It looks at the origin.
 pub const EYE: Vec3 = Vec3::new(0.0, 0.0, 6.0);
 
-fn card(at: [f32; 3], size: [f32; 2], color: [f32; 4]) -> Card {
-    let [red, green, blue, alpha] = color;
+pub fn card(at: [f32; 3], size: [f32; 2], color: [f32; 4]) -> Card {
     Card {
         transform: Transform::from_translation(at.into())
             .with_scale(Vec3::new(size[0], size[1], 1.0)),
-        color: LinearRgba::new(red, green, blue, alpha),
+        color: LinearRgba::from_f32_array(color),
     }
 }
 
@@ -48,11 +47,17 @@ pub fn crossing() -> Vec<Card> {
 
 /// Many cards of any size, opacity and direction, that cut one another, around an opaque one.
 pub fn many(count: usize) -> Vec<Card> {
-    let mut random = Random(1);
+    // A linear congruential generator: the same scene everywhere. In 0 .. 1.
+    let mut state = 1u64;
+    let mut one = || {
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (state >> 40) as f32 / (1u64 << 24) as f32
+    };
     let mut opaque = card([0.3, -0.2, 0.0], [0.8, 2.6], [0.9, 0.8, 0.1, 1.0]);
     opaque.transform.rotation = Quat::from_rotation_y(0.3);
     let transparent = (0..count).map(|_| {
-        let mut one = || random.next();
         let at = [one() * 3.0 - 1.5, one() * 3.0 - 1.5, one() * 4.0 - 2.0];
         let size = [one() * 2.0 + 0.8, one() * 2.0 + 0.8];
         let color = [one(), one(), one(), 0.15 + 0.7 * one()];
@@ -69,32 +74,13 @@ pub fn many(count: usize) -> Vec<Card> {
     std::iter::once(opaque).chain(transparent).collect()
 }
 
-/// A linear congruential generator: the same scene everywhere.
-struct Random(u64);
-
-impl Random {
-    /// In 0 .. 1.
-    fn next(&mut self) -> f32 {
-        self.0 = self
-            .0
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 40) as f32 / (1u64 << 24) as f32
-    }
-}
-
 pub fn material(color: LinearRgba) -> StandardMaterial {
     StandardMaterial {
-        base_color: color.into(),
         unlit: true,
         double_sided: true,
         cull_mode: None,
-        alpha_mode: if color.alpha < 1.0 {
-            AlphaMode::Blend
-        } else {
-            AlphaMode::Opaque
-        },
-        ..default()
+        // Blended where it is not opaque.
+        ..Color::from(color).into()
     }
 }
 
@@ -109,7 +95,6 @@ pub fn spawn_of<M: Material>(app: &mut App, card: &Card, material: M) -> Entity 
 
 /// Adds cards to an application, and says their entities.
 pub fn spawn(app: &mut App, cards: &[Card]) -> Vec<Entity> {
-    let cards = cards.iter();
-    let spawned = cards.map(|card| spawn_of(app, card, material(card.color)));
-    spawned.collect()
+    let spawn = |card: &Card| spawn_of(app, card, material(card.color));
+    cards.iter().map(spawn).collect()
 }

@@ -13,11 +13,11 @@ const FIELD_OF_VIEW: f64 = std::f64::consts::FRAC_PI_4;
 /// Rasterisers and rays may disagree about a pixel that an edge passes within this, in pixels.
 const MARGIN: f64 = 0.02;
 
-/// An image, and which pixels of it are beyond doubt.
-pub struct Exact {
-    /// Red, green and blue as a screen gets them, not rounded.
-    pub pixels: Vec<[f64; 3]>,
-    pub certain: Vec<bool>,
+pub struct Pixel {
+    /// Red, green and blue of 255 as a screen gets them, not rounded.
+    pub color: [f64; 3],
+    /// Whether no edge and no cut passes a sample.
+    pub is_certain: bool,
 }
 
 /// How far a picture is from the exact one, of 255.
@@ -32,16 +32,11 @@ pub struct Errors {
     pub judged: f64,
 }
 
-/// Where the samples of a pixel lie, as Vulkan and Direct3D have them.
-fn places_of(count: u32) -> &'static [[f64; 2]] {
+/// Where the samples of a pixel lie, in eighths of it, as Vulkan and Direct3D have them.
+fn places_of(count: u32) -> &'static [[u8; 2]] {
     match count {
-        1 => &[[0.5, 0.5]],
-        4 => &[
-            [0.375, 0.125],
-            [0.875, 0.375],
-            [0.125, 0.625],
-            [0.625, 0.875],
-        ],
+        1 => &[[4, 4]],
+        4 => &[[3, 1], [7, 3], [1, 5], [5, 7]],
         _ => panic!("{count} samples have no places here"),
     }
 }
@@ -50,39 +45,31 @@ fn places_of(count: u32) -> &'static [[f64; 2]] {
 type Plane = (DMat4, DVec4);
 
 /// The image of cards at a size, with so many samples a pixel.
-pub fn picture(cards: &[Card], size: UVec2, sample_count: u32) -> Exact {
+pub fn picture(cards: &[Card], size: UVec2, sample_count: u32) -> Vec<Pixel> {
     let planes = cards.iter().map(|card| {
         let local_from_world = card.transform.to_matrix().as_dmat4().inverse();
         (local_from_world, card.color.to_vec4().as_dvec4())
     });
     let planes: Vec<Plane> = planes.collect();
     let places = places_of(sample_count);
-    let mut exact = Exact {
-        pixels: Vec::new(),
-        certain: Vec::new(),
-    };
-    for y in 0..size.y {
-        for x in 0..size.x {
-            let corner = DVec2::new(x.into(), y.into());
-            let mut sum = DVec3::ZERO;
-            let mut certain = true;
-            for &place in places {
-                let point = corner + DVec2::from(place);
-                let hits = hits_at(&planes, point, size);
-                sum += composited(&planes, &hits);
-                for away in [[1.0, 1.0], [-1.0, -1.0], [1.0, -1.0], [-1.0, 1.0]] {
-                    let beside = point + MARGIN * DVec2::from(away);
-                    certain &= hits == hits_at(&planes, beside, size);
-                }
+    let pixels = (0..size.x * size.y).map(|index| {
+        let corner = UVec2::new(index % size.x, index / size.x).as_dvec2();
+        let mut sum = DVec3::ZERO;
+        let mut is_certain = true;
+        for &place in places {
+            let point = corner + DVec2::from(place.map(f64::from)) / 8.0;
+            let hits = hits_at(&planes, point, size);
+            sum += composited(&planes, &hits);
+            for away in [[1.0, 1.0], [-1.0, -1.0], [1.0, -1.0], [-1.0, 1.0]] {
+                let beside = point + MARGIN * DVec2::from(away);
+                is_certain &= hits == hits_at(&planes, beside, size);
             }
-            let mean = sum / places.len() as f64;
-            exact
-                .pixels
-                .push(mean.to_array().map(|v| encoded(v) * 255.0));
-            exact.certain.push(certain);
         }
-    }
-    exact
+        let mean = sum / places.len() as f64;
+        let color = mean.to_array().map(|v| encoded(v) * 255.0);
+        Pixel { color, is_certain }
+    });
+    pixels.collect()
 }
 
 /// Which cards the ray through a point of the image meets, front to back.
@@ -126,36 +113,30 @@ pub fn encoded(linear: f64) -> f64 {
     }
 }
 
-impl Exact {
-    /// Compares a picture of four bytes a pixel.
-    pub fn errors_of(&self, picture: &[u8]) -> Errors {
-        let (mut squares, mut max, mut visible, mut judged) = (0.0, 0.0f64, 0u32, 0u32);
-        for ((exact, bytes), &certain) in
-            self.pixels.iter().zip(picture.chunks(4)).zip(&self.certain)
-        {
-            if !certain {
-                continue;
-            }
-            judged += 1;
-            let differences = [0, 1, 2].map(|c| (exact[c] - f64::from(bytes[c])).abs());
-            let worst = differences.into_iter().fold(0.0, f64::max);
-            squares += differences.iter().map(|d| d * d).sum::<f64>();
-            max = max.max(worst);
-            visible += u32::from(worst > 2.0);
-        }
-        Errors {
-            rmse: (squares / f64::from(3 * judged)).sqrt(),
-            max,
-            visible: f64::from(visible) / f64::from(judged),
-            judged: f64::from(judged) / self.pixels.len() as f64,
-        }
+/// Compares a picture of four bytes a pixel with the exact one.
+pub fn errors_of(exact: &[Pixel], picture: &[u8]) -> Errors {
+    let (mut squares, mut max, mut visible, mut judged) = (0.0, 0.0f64, 0u32, 0u32);
+    let pairs = exact.iter().zip(picture.chunks(4));
+    for (exact, bytes) in pairs.filter(|(exact, _)| exact.is_certain) {
+        judged += 1;
+        let differences = [0, 1, 2].map(|c| (exact.color[c] - f64::from(bytes[c])).abs());
+        let worst = differences.into_iter().fold(0.0, f64::max);
+        squares += differences.iter().map(|d| d * d).sum::<f64>();
+        max = max.max(worst);
+        visible += u32::from(worst > 2.0);
     }
+    Errors {
+        rmse: (squares / f64::from(3 * judged)).sqrt(),
+        max,
+        visible: f64::from(visible) / f64::from(judged),
+        judged: f64::from(judged) / exact.len() as f64,
+    }
+}
 
-    pub fn bytes(&self) -> Vec<u8> {
-        let bytes = |pixel: &[f64; 3]| {
-            let [red, green, blue] = pixel.map(|v| (v + 0.5) as u8);
-            [red, green, blue, 255]
-        };
-        self.pixels.iter().flat_map(bytes).collect()
-    }
+pub fn bytes_of(exact: &[Pixel]) -> Vec<u8> {
+    let bytes = |pixel: &Pixel| {
+        let [red, green, blue] = pixel.color.map(|v| (v + 0.5) as u8);
+        [red, green, blue, 255]
+    };
+    exact.iter().flat_map(bytes).collect()
 }

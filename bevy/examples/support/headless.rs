@@ -5,9 +5,10 @@ use super::{
     exact::{self, Errors},
 };
 use bevy::{
-    app::PluginsState,
+    app::{PluginsState, TerminalCtrlCHandlerPlugin},
     camera::{Hdr, RenderTarget},
     core_pipeline::tonemapping::{DebandDither, Tonemapping},
+    log::{Level, LogPlugin},
     prelude::*,
     render::{
         RenderPlugin,
@@ -19,8 +20,8 @@ use bevy::{
 };
 use bevy_peelnet::{Gravity, LearnedTransparency, PeelnetMessages, PeelnetPlugin};
 use std::sync::{
-    Arc, Mutex,
     atomic::{AtomicBool, Ordering},
+    mpsc,
 };
 
 /// Frames after which all pipelines are there: Bevy's come in one frame, ours a frame later, and a shader may come late.
@@ -39,15 +40,14 @@ pub struct Headless {
 impl Headless {
     /// A camera that sees cards. The width must be a multiple of 64: rows are read as they are copied.
     pub fn new(size: UVec2, msaa: Msaa, plugin: impl Into<PeelnetPlugin>, scene: &[Card]) -> Self {
-        let mut headless = Self::with_settings(size, msaa, plugin.into(), WgpuSettings::default());
-        cards::spawn(&mut headless.app, scene);
-        headless
+        Self::with_settings(size, msaa, plugin, scene, WgpuSettings::default())
     }
 
     pub fn with_settings(
         size: UVec2,
         msaa: Msaa,
-        plugin: PeelnetPlugin,
+        plugin: impl Into<PeelnetPlugin>,
+        scene: &[Card],
         settings: WgpuSettings,
     ) -> Self {
         assert!(size.x.is_multiple_of(64));
@@ -61,24 +61,23 @@ impl Headless {
             synchronous_pipeline_compilation: true,
             ..default()
         };
-        let plugins = DefaultPlugins
+        let log = LogPlugin {
+            level: Level::WARN,
+            filter: String::new(),
+            ..default()
+        };
+        let mut plugins = DefaultPlugins
             .set(window)
             .set(render)
-            .set(bevy::log::LogPlugin {
-                level: bevy::log::Level::WARN,
-                filter: String::new(),
-                ..default()
-            })
+            .set(log)
             // Several applications in one process would each want to be told.
-            .disable::<bevy::app::TerminalCtrlCHandlerPlugin>();
-        let mut app = App::new();
+            .disable::<TerminalCtrlCHandlerPlugin>();
         // The first of a process logs for all.
         if LOGGED.swap(true, Ordering::Relaxed) {
-            app.add_plugins(plugins.disable::<bevy::log::LogPlugin>());
-        } else {
-            app.add_plugins(plugins);
+            plugins = plugins.disable::<LogPlugin>();
         }
-        app.add_plugins(plugin)
+        let mut app = App::new();
+        app.add_plugins((plugins, plugin.into()))
             .insert_resource(ClearColor(BACKGROUND.into()));
         let mut image =
             Image::new_target_texture(size.x, size.y, TextureFormat::Rgba8UnormSrgb, None);
@@ -94,6 +93,7 @@ impl Headless {
             Transform::from_translation(EYE).looking_at(Vec3::ZERO, Vec3::Y),
         );
         let camera = app.world_mut().spawn(camera).id();
+        cards::spawn(&mut app, scene);
         Self {
             app,
             camera,
@@ -115,14 +115,30 @@ impl Headless {
     pub fn errors(&mut self, scene: &[Card]) -> Errors {
         let msaa = self.app.world().get::<Msaa>(self.camera);
         let samples = msaa.map_or(1, Msaa::samples);
-        let errors = exact::picture(scene, self.size, samples).errors_of(&self.picture());
+        let exact = exact::picture(scene, self.size, samples);
+        let errors = exact::errors_of(&exact, &self.picture());
         // The rest is edges.
         assert!(errors.judged > 0.85, "{errors:?}");
         errors
     }
 
+    /// No channel of a pixel is farther than this from the exact picture of a scene.
+    pub fn assert_exact(&mut self, scene: &[Card], most: f64) {
+        let errors = self.errors(scene);
+        assert!(errors.max <= most, "{errors:?}");
+    }
+
     pub fn messages(&self) -> Vec<(Gravity, String)> {
         self.app.world().resource::<PeelnetMessages>().all()
+    }
+
+    /// The plugin reported one message, which says all of this.
+    pub fn assert_said(&self, gravity: Gravity, says: &[&str]) {
+        let said = self.messages();
+        assert_eq!(said.len(), 1, "{said:?}");
+        assert_eq!(said[0].0, gravity, "{said:?}");
+        let all = says.iter().all(|text| said[0].1.contains(text));
+        assert!(all, "{said:?}");
     }
 
     /// Draws frames. Plugins are made ready first: the last one is added by now.
@@ -142,25 +158,19 @@ impl Headless {
     /// The picture of a settled frame: four bytes a pixel, encoded as for a screen.
     pub fn picture(&mut self) -> Vec<u8> {
         self.run(FRAMES_TO_SETTLE);
-        let bytes: Arc<Mutex<Option<Vec<u8>>>> = Arc::default();
-        let into = Arc::clone(&bytes);
+        let (sender, receiver) = mpsc::channel();
         // Not `ReadbackOnce`: Bevy removes one before the frame if it was spawned between two frames.
-        let reader = self
-            .app
-            .world_mut()
-            .spawn(Readback::texture(self.image.clone()))
-            .observe(move |event: On<ReadbackComplete>| {
-                if let Ok(mut bytes) = into.lock() {
-                    *bytes = Some(event.data.clone());
-                }
-            })
-            .id();
+        let readback = Readback::texture(self.image.clone());
+        let mut reader = self.app.world_mut().spawn(readback);
+        reader.observe(move |event: On<ReadbackComplete>| {
+            let _ = sender.send(event.data.clone());
+        });
+        let reader = reader.id();
         for _ in 0..FRAMES_TO_READ {
             self.app.update();
-            let read = bytes.lock().ok().and_then(|mut bytes| bytes.take());
-            if let Some(read) = read {
+            if let Ok(bytes) = receiver.try_recv() {
                 self.app.world_mut().despawn(reader);
-                return read;
+                return bytes;
             }
         }
         panic!("the image was not read back within {FRAMES_TO_READ} frames");

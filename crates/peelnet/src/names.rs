@@ -24,7 +24,7 @@ pub const SPLITS: &[(&str, SplitBy)] = &[("scene", SplitBy::Scene), ("pixel", Sp
 #[cfg(feature = "train")]
 pub const SCHEDULES: &[(&str, Schedule)] = &[
     ("constant", Schedule::Constant),
-    ("one-cycle", Schedule::ONE_CYCLE),
+    ("one-cycle", Schedule::OneCycle { warmup: 0.2 }),
 ];
 
 /// What has a name.

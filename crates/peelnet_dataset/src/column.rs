@@ -1,12 +1,11 @@
 //! The columns of a dataset, in one table: name, type, unit, allowed values, and what a value says. Files,
 //! readers, summaries, documentation and the Python package iterate over it. How peeled fragments become
-//! rows and what rows must say about one another follow it.
+//! rows follows it.
 
 use std::fmt;
 use std::ops::Range;
 use std::path::Path;
 
-use peelnet_core::tolerance::{self, UNIT_ROUNDOFF};
 use serde::{Deserialize, Serialize};
 
 use crate::error::DatasetError;
@@ -19,16 +18,6 @@ pub enum ColumnKind {
     F32,
     /// 32-bit unsigned integer.
     U32,
-}
-
-impl ColumnKind {
-    /// The name in manifests and documents.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::F32 => "f32",
-            Self::U32 => "u32",
-        }
-    }
 }
 
 /// Which values a column may have. No float is NaN or infinite.
@@ -203,13 +192,6 @@ pub struct PeeledFragment {
     pub color: [f32; 4],
 }
 
-impl PeeledFragment {
-    /// A fragment that no scene was drawn for.
-    pub const fn new(depth: f32, color: [f32; 4]) -> Self {
-        Self { depth, color }
-    }
-}
-
 /// Fragments of a pixel beyond which sums and products are formed in 64 bits: `n` factors formed in 32 bits err by up to `2n` roundings
 /// of 2⁻²⁴, a hundredth at 100,000. Rows of shorter runs keep the bits that they have always had.
 const LONG: usize = 1500;
@@ -262,64 +244,7 @@ impl FragmentBatch {
     }
 }
 
-/// A pixel's rows, and what those say together, in 64 bits.
-pub(crate) struct PixelSums {
-    pub rows: Range<usize>,
-    pub alpha_sum: f64,
-    /// ∏(1 − α_j) over the rows before this one.
-    pub transmittance: f64,
-    /// Whether peeling left fragments of the part out.
-    pub lossy: bool,
-}
-
-/// What columns must say, given the other rows of their pixel: the property with its tolerance, in the order
-/// of summaries.
-pub(crate) const CHECKS: &[(Column, &str)] = &[
-    (Column::Transmittance, "|T_i − ∏_{j<i}(1 − α_j)| ≤ 2·n·2⁻²⁴"),
-    (Column::AlphaSum, "|alpha_sum − Σα| ≤ n·2⁻²⁴·(Σα + 1)"),
-    (Column::FragmentCount, "fragment_count = rows of the pixel"),
-    (Column::Layer, "layer = 0, 1, … n − 1"),
-    (Column::LinearDepth, "z_i ≥ z_{i−1}"),
-];
-
-impl FragmentBatch {
-    /// What a column of [`CHECKS`] must say in row `i` of a pixel, and how far it may be off; `None` where
-    /// that cannot be known.
-    pub(crate) fn expected(
-        &self,
-        column: Column,
-        sums: &PixelSums,
-        i: usize,
-    ) -> Option<(f64, f64)> {
-        let (n, before) = (sums.rows.len(), sums.rows.start.max(i.saturating_sub(1)));
-        Some(match column {
-            Column::LinearDepth => {
-                let expected = self.linear_depth[i].max(self.linear_depth[before]);
-                (expected.into(), 0.0)
-            }
-            // All others are of all fragments of the pixel.
-            _ if sums.lossy => return None,
-            Column::Transmittance => (sums.transmittance, tolerance::transmittance(n)),
-            // Σα summed in 32 bits in any order, against a 64-bit sum over the stored 1 − α: n − 1 additions
-            // err by at most one unit roundoff of the sum each, and n times α is recovered from a rounded
-            // 1 − α, at most one unit roundoff of 1.
-            Column::AlphaSum => {
-                let tolerance = n as f64 * UNIT_ROUNDOFF * (sums.alpha_sum + 1.0);
-                (sums.alpha_sum, tolerance)
-            }
-            Column::FragmentCount => (n as f64, 0.0),
-            Column::Layer => ((i - sums.rows.start) as f64, 0.0),
-            _ => return None,
-        })
-    }
-}
-
 impl Column {
-    /// Position in [`Column::ALL`].
-    pub const fn index(self) -> usize {
-        self as usize
-    }
-
     /// The column of a name, if there is one.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|c| c.name() == name)
@@ -346,16 +271,6 @@ pub type ColumnSlice<'a> = Typed<&'a [f32], &'a [u32]>;
 /// The values of one column, taken out of a batch.
 pub type ColumnValues = Typed<Vec<f32>, Vec<u32>>;
 pub(crate) type ColumnMut<'a> = Typed<&'a mut Vec<f32>, &'a mut Vec<u32>>;
-
-impl ColumnSlice<'_> {
-    /// The value of a row.
-    pub(crate) fn value(&self, row: usize) -> f64 {
-        match self {
-            Self::F32(values) => values[row].into(),
-            Self::U32(values) => values[row].into(),
-        }
-    }
-}
 
 impl FragmentBatch {
     /// Number of rows.

@@ -121,7 +121,7 @@ fn remove_partial(path: &Path) -> std::io::Result<()> {
 
 /// The files of the dataset in a folder, in an order in which they can be removed: those that list others last. What living writers have
 /// in `_peelnet/` is left out. The first file in the folder that is not a dataset's is an error.
-fn older_files(folder: &Path) -> Result<Vec<PathBuf>, DatasetError> {
+pub(crate) fn older_files(folder: &Path) -> Result<Vec<PathBuf>, DatasetError> {
     let store = Folder {
         path: folder.to_owned(),
         scratch: None,
@@ -208,14 +208,6 @@ pub(crate) fn prepare(folder: &Path, joins: bool) -> Result<bool, DatasetError> 
         Some(found) => Err(not_ours(folder, found, None)),
         None => Ok(false),
     }
-}
-
-/// Removes the older dataset, or nothing where a foreign file came meanwhile.
-pub(crate) fn remove_older(folder: &Path) -> Result<(), DatasetError> {
-    for path in older_files(folder)? {
-        fs::remove_file(&path).map_err(DatasetError::io(&path, "replace"))?;
-    }
-    Ok(())
 }
 
 /// Names in `_peelnet/` of what writers have there, alive or not.

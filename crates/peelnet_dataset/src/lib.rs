@@ -30,9 +30,6 @@
 //! [`Header::shard`] takes every N-th work item, [`Header::resume`] whatever is missing. Whoever finishes the last part seals the dataset,
 //! and [`seal`](fn@seal) does it afterwards; the manifest's bytes do not depend on who does.
 //!
-//! **Replacing.** A writer of a whole dataset that finds an older one keeps all parts aside until its end; then it removes the older one's
-//! files, as manifest and records list them, and puts its own where nothing is. Datasets in object stores are never replaced.
-//!
 //! **Reading.** [`Dataset::open`] checks the manifest and the sizes of all files; the hash of a file is checked before its
 //! first row is read. [`Dataset::batches`] streams whole pixels, [`Dataset::read_columns`] loads chosen columns. Every value is
 //! checked against its column's range on the way in *and* on the way out, so a NaN cannot reach a network. [`summary`] recomputes what the
@@ -40,7 +37,7 @@
 //!
 //! **Object stores.** With the feature `object-store`, `s3://bucket/prefix`, `gs://…` and `az://…` stand wherever a folder does, as
 //! `file:///…` does always. Settings and credentials come from the environment (`AWS_…`, `GOOGLE_…`, `AZURE_…`). A part is written on this
-//! machine and sent by one conditional request for each file; a part that is read is fetched whole.
+//! machine and sent by one conditional request for each file; a part that is read is fetched whole. Datasets there are never replaced.
 
 mod column;
 mod error;

@@ -131,9 +131,6 @@ pub(crate) fn unsealed(store: &dyn Store, plan: &Plan) -> Result<DatasetError, D
 }
 
 /// How many parts of a dataset that is not sealed are finished, and how many it will have; `None` if it is sealed, or none.
-///
-/// # Errors
-/// If it cannot be read.
 pub fn unsealed_parts(path: impl AsRef<Path>) -> Result<Option<(u32, u32)>, DatasetError> {
     let store = store_at(path.as_ref())?;
     match Plan::read(&*store)? {

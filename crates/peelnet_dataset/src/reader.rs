@@ -144,9 +144,6 @@ impl Dataset {
 
     /// Calls `each` with pieces of columns, in order; the other columns are empty. Parquet and NPY read these columns only, and memory does
     /// not grow with the dataset.
-    ///
-    /// # Errors
-    /// If a file cannot be read, or a value is out of its column's range.
     pub fn read_pieces(
         &self,
         columns: &[Column],
@@ -171,9 +168,6 @@ impl Dataset {
     }
 
     /// Reads columns into memory; the other columns are empty. Parquet and NPY read these columns only; memory grows with the rows.
-    ///
-    /// # Errors
-    /// If a file cannot be read, or a value is out of its column's range.
     pub fn read_columns(&self, columns: &[Column]) -> Result<FragmentBatch, DatasetError> {
         // No room is taken ahead: the manifest can promise any number of rows.
         let mut all = FragmentBatch::default();

@@ -1,9 +1,10 @@
 //! What `peelnet inspect` says about a dataset: counts, ranges, histograms, and whether the rows agree with one
 //! another.
 
+use peelnet_core::tolerance::{self, UNIT_ROUNDOFF};
 use serde::{Deserialize, Serialize};
 
-use crate::column::{CHECKS, Column, ColumnSlice, FragmentBatch, PixelSums};
+use crate::column::{Column, ColumnSlice, FragmentBatch};
 use crate::error::DatasetError;
 use crate::manifest::Manifest;
 use crate::reader::Dataset;
@@ -12,8 +13,17 @@ use crate::reader::Dataset;
 const LISTED: usize = 20;
 const ALPHA_BINS: usize = 20;
 
+/// What a row must say, given the other rows of its pixel: column and property with its tolerance.
+const CHECKS: [(Column, &str); 5] = [
+    (Column::Transmittance, "|T_i − ∏_{j<i}(1 − α_j)| ≤ 2·n·2⁻²⁴"),
+    (Column::AlphaSum, "|alpha_sum − Σα| ≤ n·2⁻²⁴·(Σα + 1)"),
+    (Column::FragmentCount, "fragment_count = rows of the pixel"),
+    (Column::Layer, "layer = 0, 1, … n − 1"),
+    (Column::LinearDepth, "z_i ≥ z_{i−1}"),
+];
+
 /// A dataset in figures.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Summary {
     /// Hash of the dataset.
     pub hash: String,
@@ -75,7 +85,7 @@ pub struct Bin {
 }
 
 /// One property of the rows.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Check {
     /// Its name.
     pub name: String,
@@ -142,9 +152,7 @@ impl Summary {
         let checks = CHECKS.iter().map(|(column, formula)| Check {
             name: column.name().to_owned(),
             formula: (*formula).to_owned(),
-            worst: 0.0,
-            worst_ratio: 0.0,
-            violations: 0,
+            ..Check::default()
         });
         let rows_by_scene = manifest.rows_by_scene();
         let scenes = manifest.scenes.iter().map(|scene| SceneRows {
@@ -164,17 +172,13 @@ impl Summary {
         });
         Self {
             hash: manifest.hash.clone(),
-            rows: 0,
-            pixels: 0,
             lost_fragments: manifest.lost_fragments,
             coplanar_ties: manifest.coplanar_ties,
             scenes: scenes.collect(),
             columns: columns.into(),
-            fragments_per_pixel: Vec::new(),
             alpha: alpha.collect(),
             checks: checks.collect(),
-            violations: Vec::new(),
-            parts_not_checked: 0,
+            ..Self::default()
         }
     }
 
@@ -220,32 +224,43 @@ impl Summary {
         bins[bin].count += 1;
 
         let alphas = batch.one_minus_alpha[pixel.clone()].iter();
-        let mut sums = PixelSums {
-            rows: pixel.clone(),
-            alpha_sum: alphas.map(|&v| 1.0 - f64::from(v)).sum(),
-            transmittance: 1.0,
-            lossy,
-        };
-        for i in pixel {
+        let alpha_sum: f64 = alphas.map(|&v| 1.0 - f64::from(v)).sum();
+        // Σα summed in 32 bits in any order, against a 64-bit sum over the stored 1 − α: n − 1 additions err by at most one unit roundoff
+        // of the sum each, and n times α is recovered from a rounded 1 − α, at most one unit roundoff of 1.
+        let sum_tolerance = n as f64 * UNIT_ROUNDOFF * (alpha_sum + 1.0);
+        // ∏(1 − α_j) over the rows before this one.
+        let mut transmittance = 1.0;
+        let mut before = 0.0f32;
+        for (layer, i) in pixel.enumerate() {
             let place = (file, first_row + i as u64);
-            for (k, &(column, _)) in CHECKS.iter().enumerate() {
-                if let Some((expected, tolerance)) = batch.expected(column, &sums, i) {
-                    let found = batch.column(column).value(i);
-                    self.check(k, place, found, expected, tolerance);
-                }
+            let depth = batch.linear_depth[i];
+            let checked = [
+                (
+                    batch.transmittance[i].into(),
+                    transmittance,
+                    tolerance::transmittance(n),
+                ),
+                (batch.alpha_sum[i].into(), alpha_sum, sum_tolerance),
+                (batch.fragment_count[i].into(), n as f64, 0.0),
+                (batch.layer[i].into(), layer as f64, 0.0),
+                (depth.into(), depth.max(before).into(), 0.0),
+            ];
+            // All but the order of depths are of all fragments of the pixel.
+            let first = if lossy { 4 } else { 0 };
+            for (k, values) in checked.into_iter().enumerate().skip(first) {
+                self.check(k, place, values);
             }
-            sums.transmittance *= f64::from(batch.one_minus_alpha[i]);
+            transmittance *= f64::from(batch.one_minus_alpha[i]);
+            before = depth;
         }
     }
 
-    /// Compares a row's value with what the others say, for the check of this number.
+    /// Compares a row's value with what the others say, and the deviation with its tolerance, for the check of this number.
     fn check(
         &mut self,
         check: usize,
         (file, row): (&str, u64),
-        found: f64,
-        expected: f64,
-        tolerance: f64,
+        (found, expected, tolerance): (f64, f64, f64),
     ) {
         let check = &mut self.checks[check];
         let deviation = (found - expected).abs();

@@ -198,7 +198,10 @@ impl DatasetWriter {
         }
         let _moving = self.replaces.then(|| self.moving());
         if self.replaces {
-            folder::remove_older(self.store.path())?;
+            // All of them, or nothing where a foreign file came meanwhile.
+            for path in folder::older_files(self.store.path())? {
+                std::fs::remove_file(&path).map_err(DatasetError::io(&path, "replace"))?;
+            }
         }
         // The plan again: a first writer that gave up may have taken it away.
         self.plan.agree(&*self.store)?;

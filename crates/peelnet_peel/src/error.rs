@@ -45,9 +45,3 @@ impl PeelError {
         Self::Setting { setting, reason }
     }
 }
-
-impl From<peelnet_render::shaders::ShaderError> for PeelError {
-    fn from(e: peelnet_render::shaders::ShaderError) -> Self {
-        Self::Render(e.into())
-    }
-}

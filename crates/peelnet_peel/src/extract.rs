@@ -263,10 +263,8 @@ pub(crate) fn write(
     };
     progress(&state);
     let (mut lost, mut coplanar, mut gpu_micros, mut tiles) = (0, 0, 0.0, 0);
-    let go_on = || match stop.load(Ordering::Relaxed) {
-        true => Err(PeelError::Interrupted),
-        false => Ok(()),
-    };
+    let goes_on = || !stop.load(Ordering::Relaxed);
+    let go_on = || goes_on().then_some(()).ok_or(PeelError::Interrupted);
     let make = |outbox: &Outbox| make(&missing, outbox);
     stream(make, |mut feed| {
         while let Some(part) = feed.part() {

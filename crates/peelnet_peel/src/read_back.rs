@@ -1,17 +1,14 @@
 //! Finds all fragments of a view, tile by tile, in one of three ways that leave the same runs in storage.
 
 use crate::PeelError;
-use bytemuck::{Pod, Zeroable};
 use peelnet_core::absorbance::DepthWarp;
-use peelnet_dataset::PeeledFragment;
 use peelnet_render::geometry::{
-    FrameTargets, PixelSample, SamplePoint, SceneBuffers,
+    FrameTargets, PixelSample, RenderError, SamplePoint, SceneBuffers,
     count::{CountPass, FragmentCount},
-    dual::DualPeel,
+    depth_peel::DepthPeel,
     fragments::Tile,
     frame::Output,
     sbuffer::SBuffer,
-    single::SinglePeel,
 };
 use peelnet_render::gpu::{
     Gpu, Kernel,
@@ -74,32 +71,6 @@ pub struct RawTile {
     pub triangles: Vec<u32>,
 }
 
-impl RawTile {
-    /// The fragment in a slot, as rows say it.
-    pub(crate) fn fragment(&self, slot: usize) -> PeeledFragment {
-        PeeledFragment {
-            depth: self.depths[slot],
-            color: self.colors[slot],
-        }
-    }
-}
-
-/// Layout of `Step` in `peel/collect_dual.wgsl`.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-struct Step {
-    pass_index: u32,
-    width: u32,
-    pad: [u32; 2],
-}
-
-/// Passes that find layers, for the ways that do not store and sort.
-#[derive(Debug)]
-enum Peeler {
-    Dual(Box<DualPeel>),
-    Single(Box<SinglePeel>),
-}
-
 /// A scene made ready for peeling at one frame size.
 #[derive(Debug)]
 pub struct FragmentReader {
@@ -107,7 +78,8 @@ pub struct FragmentReader {
     scene: SceneBuffers,
     frame: FrameTargets,
     sbuffer: SBuffer,
-    peeler: Option<Peeler>,
+    /// Passes that find layers, for the ways that do not store and sort.
+    peeler: Option<DepthPeel>,
     /// They put peeled layers into runs, in turn; made anew when storage grows.
     collectors: Option<[Kernel; 2]>,
     step: wgpu::Buffer,
@@ -148,18 +120,12 @@ impl FragmentReader {
         let frame = scene.targets(size, Output::Image, None)?;
         let peeler = match peel {
             Peel::SBuffer => None,
-            Peel::Dual => {
-                let dual = DualPeel::new(&scene, &frame, features, None)?;
-                Some(Peeler::Dual(dual.into()))
-            }
-            Peel::Single => {
-                let single = SinglePeel::new(&scene, &frame, features)?;
-                Some(Peeler::Single(single.into()))
-            }
+            Peel::Dual => Some(DepthPeel::dual(&scene, &frame, features, None)?),
+            Peel::Single => Some(DepthPeel::single(&scene, &frame, features)?),
         };
         Ok(Self {
             sbuffer: SBuffer::new(&scene, &frame, budget, features)?,
-            step: gpu.upload("step", &[Step::zeroed()], wgpu::BufferUsages::UNIFORM),
+            step: gpu.upload("step", &[0u32; 4], wgpu::BufferUsages::UNIFORM),
             collectors: None,
             with_triangles: false,
             tile: RawTile::default(),
@@ -199,13 +165,22 @@ impl FragmentReader {
         let (scene, frame) = (&self.scene, &self.frame);
         scene.set_view(&mut recorder, camera, frame, sample, SamplePoint::MIDDLE);
         scene.draw_background(&mut recorder, frame, None, true);
-        let found = self.sbuffer.count.run(&mut recorder, scene, frame)?;
+        let count = &self.sbuffer.count;
+        count.encode(&mut recorder, scene, frame);
+        recorder.submit();
+        let found = CountPass::parse(&gpu.read(&count.total, 0..count.total.size())?)?;
         let needed = match self.peeler {
             None => found,
             // They come sorted.
             Some(_) => FragmentCount { most: 0, ..found },
         };
-        let (tiles, grown) = self.sbuffer.plan_counted(scene, frame, needed)?;
+        let mut planned = self.sbuffer.plan(scene, frame, needed, None)?;
+        if planned.is_none() {
+            let offsets = &self.sbuffer.count.offsets;
+            let offsets: Vec<u32> = gpu.read(offsets, 0..u64::from(frame.pixels()) * 4 + 4)?;
+            planned = self.sbuffer.plan(scene, frame, needed, Some(&offsets))?;
+        }
+        let (tiles, grown) = planned.unwrap_or_default();
         if grown {
             self.collectors = self.collectors()?;
         }
@@ -240,7 +215,7 @@ impl FragmentReader {
     /// Peels the whole frame of so many layers and keeps what lies in `tile`.
     fn peel(
         &self,
-        peeler: &Peeler,
+        peeler: &DepthPeel,
         recorder: &mut Recorder<'_>,
         tile: &Tile,
         layers: u32,
@@ -253,27 +228,12 @@ impl FragmentReader {
         // A depth of 0 marks a slot that no pass fills.
         recorder.encoder().clear_buffer(&storage.depths, 0, None);
         let (scene, frame) = (&self.scene, &self.frame);
-        let passes = match peeler {
-            Peeler::Dual(dual) => {
-                dual.init(recorder, scene, frame);
-                layers.div_ceil(2)
-            }
-            Peeler::Single(single) => {
-                single.init(recorder);
-                layers
-            }
-        };
+        peeler.init(recorder, scene, frame);
+        let passes = layers.div_ceil(peeler.layers.len() as u32);
         for pass_index in 0..passes.min(most_passes) {
-            match peeler {
-                Peeler::Dual(dual) => dual.peel(recorder, scene, frame, pass_index, false),
-                Peeler::Single(single) => single.peel(recorder, scene, frame, pass_index),
-            }
-            let step = Step {
-                pass_index,
-                width: frame.size[0],
-                pad: [0; 2],
-            };
-            recorder.write(&self.step, &[step]);
+            peeler.peel(recorder, scene, frame, pass_index, false);
+            // `Step` in `peel/collect_dual.wgsl`.
+            recorder.write(&self.step, &[pass_index, frame.size[0], 0, 0]);
             collectors[(pass_index % 2) as usize].dispatch(recorder, tile.end - tile.begin);
         }
     }
@@ -282,31 +242,28 @@ impl FragmentReader {
         let (Some(peeler), Some(storage)) = (&self.peeler, self.sbuffer.storage()) else {
             return Ok(None);
         };
-        let (shader, textures) = match peeler {
-            Peeler::Dual(dual) => {
-                let [front, back] = [&dual.front, &dual.back].map(Bind::Texture);
-                let bind = |range| vec![Bind::Texture(range), front, back];
-                ("peel::collect_dual", dual.ranges.each_ref().map(bind))
-            }
-            Peeler::Single(single) => {
-                let [first, second] = single.keys.each_ref();
-                let bind = |key| vec![Bind::Texture(key), Bind::Texture(&single.layer)];
-                ("peel::collect_single", [second, first].map(bind))
-            }
+        let collector = |from: usize| {
+            let (range, key) = (&peeler.reached[from], &peeler.reached[1 - from]);
+            let (shader, peeled) = match peeler.layers.as_slice() {
+                [front, back] => (
+                    "peel::collect_dual",
+                    vec![("range", range), ("front", front), ("back", back)],
+                ),
+                layers => (
+                    "peel::collect_single",
+                    vec![("key", key), ("color", &layers[0])],
+                ),
+            };
+            let mut named = self.sbuffer.named(storage).to_vec();
+            named.push(("peel_step", Bind::Buffer(&self.step)));
+            named.extend(
+                peeled
+                    .iter()
+                    .map(|&(name, view)| (name, Bind::Texture(view))),
+            );
+            Kernel::link(&self.gpu, shader, &[], &[], &named).map_err(RenderError::from)
         };
-        let shader = peelnet_render::shaders::link(shader, &[], &[])?;
-        let kernel = |textures: Vec<Bind<'_>>| {
-            let mut entries = vec![
-                Bind::Uniform(&self.sbuffer.tile),
-                Bind::Uniform(&self.step),
-                Bind::Read(&self.sbuffer.count.offsets),
-                Bind::Write(&storage.depths),
-                Bind::Write(&storage.colors),
-            ];
-            entries.extend(textures);
-            Kernel::new(&self.gpu, &shader, &entries)
-        };
-        Ok(Some(textures.map(kernel)))
+        Ok(Some([collector(0)?, collector(1)?]))
     }
 
     fn read(&self, tile: &Tile, raw: &mut RawTile) -> Result<(), PeelError> {

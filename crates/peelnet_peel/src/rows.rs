@@ -1,11 +1,11 @@
 //! From a tile's runs of fragments to rows of the dataset.
 
 use crate::{PeelError, read_back::RawTile};
-use peelnet_dataset::{FragmentBatch, Part};
+use peelnet_dataset::{FragmentBatch, Part, PeeledFragment};
 
 /// What was noticed on the way.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct RowCounts {
+pub(crate) struct RowCounts {
     /// Rows written.
     pub rows: u64,
     /// Slots that peeling left empty: fragments lost.
@@ -15,11 +15,8 @@ pub struct RowCounts {
 }
 
 /// Makes the rows of a part's tile in `batch`, which is empty, and calls `flush` whenever it holds `chunk` rows or more (pixels stay
-/// whole) and once at the end.
-///
-/// # Errors
-/// What `flush` returns, and rows out of order, which the GPU should have sorted.
-pub fn make_rows(
+/// whole) and once at the end. Rows out of order, which the GPU should have sorted, are an error.
+pub(crate) fn make_rows(
     tile: &RawTile,
     part: &Part,
     batch: &mut FragmentBatch,
@@ -46,7 +43,11 @@ pub fn make_rows(
         }
         let slots = run.len() as u32;
         let pixel = [part.index, pixel % part.width, pixel / part.width];
-        let rows = batch.push_pixel(pixel, clip, run.map(|slot| tile.fragment(slot)));
+        let fragment = |slot: usize| PeeledFragment {
+            depth: tile.depths[slot],
+            color: tile.colors[slot],
+        };
+        let rows = batch.push_pixel(pixel, clip, run.map(fragment));
         counts.lost += u64::from(slots - rows);
         counts.rows += u64::from(rows);
         if batch.len() >= chunk {
@@ -96,12 +97,7 @@ mod tests {
             Ok(())
         })
         .expect("rows");
-        let expected = RowCounts {
-            rows: 5,
-            lost: 1,
-            coplanar: 0,
-        };
-        assert_eq!(counts, expected);
+        assert_eq!((counts.rows, counts.lost, counts.coplanar), (5, 1, 0));
         assert_eq!(all.transmittance, [1.0, 0.5, 0.25, 0.125, 1.0]);
         assert_eq!(all.layer, [0, 1, 2, 3, 0]);
         assert_eq!(all.fragment_count, [4, 4, 4, 4, 1]);

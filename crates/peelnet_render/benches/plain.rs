@@ -101,7 +101,7 @@ impl<'g> Plain<'g> {
         let image = texture("image", T::Rgba16Float)?;
         let camera = gpu.upload("camera", &[[0.0f32; 16]], wgpu::BufferUsages::UNIFORM);
         let colors = gpu.upload("colors", &colors, wgpu::BufferUsages::STORAGE);
-        let entries = [Bind::Uniform(&camera), Bind::Read(&colors)];
+        let entries = [(0, Bind::Uniform(&camera)), (1, Bind::Read(&colors))];
         let scene_group = gpu.bind("scene", wgpu::ShaderStages::VERTEX_FRAGMENT, &entries);
         let buffers = [Some(wgpu::VertexBufferLayout {
             array_stride: 16,
@@ -180,7 +180,7 @@ impl<'g> Plain<'g> {
             pass.draw(0..self.count, 0..1);
         }
         let over = attachment(&self.image, wgpu::LoadOp::Load);
-        self.resolve.draw(&mut recorder, &[over]);
+        self.resolve.draw(&mut recorder, &[over], None);
         let times = timer.finish(self.gpu, &mut encoder);
         queue.submit([encoder.finish()]);
         let passes = self.gpu.block_on(times)?;

@@ -154,7 +154,7 @@ impl Canvas {
         } else {
             attachment(view, wgpu::LoadOp::Load)
         };
-        pass.draw(&mut recorder, &[target]);
+        pass.draw(&mut recorder, &[target], None);
         let times = timer.finish(gpu, &mut encoder);
         gpu.queue.submit([encoder.finish()]);
         gpu.submitted_async().await;

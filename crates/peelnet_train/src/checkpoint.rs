@@ -65,14 +65,6 @@ fn damaged(e: impl std::fmt::Display) -> String {
 }
 
 impl Progress {
-    pub(crate) fn new(parameters: Vec<f32>, device: &Device) -> Self {
-        Self {
-            adam: Adam::new(upload(parameters, device)),
-            best: None,
-            history: Vec::new(),
-        }
-    }
-
     pub(crate) fn save(
         &self,
         folder: &Path,
@@ -88,16 +80,10 @@ impl Progress {
             epochs: self.history.len(),
             best_epoch: self.best.as_ref().map(|(epoch, _)| *epoch),
         };
-        let Adam {
-            parameters,
-            first,
-            second,
-            ..
-        } = &self.adam;
         let mut tensors = vec![
-            ("parameters", parameters),
-            ("first_moment", first),
-            ("second_moment", second),
+            ("parameters", &self.adam.parameters),
+            ("first_moment", &self.adam.first),
+            ("second_moment", &self.adam.second),
         ];
         tensors.extend(self.best.iter().map(|(_, best)| ("best_parameters", best)));
         let mut tensors: Vec<_> = tensors

@@ -82,9 +82,6 @@ pub enum Schedule {
 }
 
 impl Schedule {
-    /// One cycle, with the share of rising steps that the networks of this project are trained with.
-    pub const ONE_CYCLE: Self = Self::OneCycle { warmup: 0.2 };
-
     /// The rate of step `step` (from 0) of `steps`.
     pub(crate) fn rate(self, peak: f64, step: u64, steps: u64) -> f64 {
         let Self::OneCycle { warmup } = self else {
@@ -113,10 +110,6 @@ const fn default_max_rows() -> u64 {
 }
 
 /// Left out of saved configurations, as the choice of loss.
-#[allow(
-    clippy::trivially_copy_pass_by_ref,
-    reason = "serde passes a reference"
-)]
 const fn is_default_max_rows(rows: &u64) -> bool {
     *rows == DEFAULT_MAX_ROWS
 }

@@ -72,10 +72,6 @@ impl Sample {
         }
     }
 
-    pub(crate) fn all() -> Self {
-        Self::new(0, u64::MAX, 0)
-    }
-
     /// The next view begins, of so many rows.
     pub(crate) fn begin(&mut self, rows: u64) {
         self.view += 1;

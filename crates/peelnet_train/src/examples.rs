@@ -140,7 +140,17 @@ pub(crate) fn gather<'a>(
                     pixels += 1;
                 }
                 let subset = view.split.pixel(index, x, y);
-                add(recipe, data, pixel, subset);
+                match recipe.inputs.examples(pixel) {
+                    Examples::Rows(rows) => {
+                        for row in rows {
+                            data.push_row(row.inputs, row.targets);
+                            data.end_example(row.weight, subset);
+                        }
+                    }
+                    Examples::Pixel(fragments) => {
+                        pixel_example(data, pixel, subset, recipe.inputs.known_apart(), &fragments);
+                    }
+                }
             });
             after(number, batch.len(), data)?;
         }
@@ -158,21 +168,6 @@ fn hardness(recipe: Recipe, pixel: &PeeledPixel<'_>) -> f64 {
         }
     }
     error.iter().map(|e| e * e / 3.0).sum()
-}
-
-/// Appends what the recipe learns from a pixel.
-fn add(recipe: Recipe, data: &mut TrainingData, pixel: &PeeledPixel<'_>, subset: Subset) {
-    match recipe.inputs.examples(pixel) {
-        Examples::Rows(rows) => {
-            for row in rows {
-                data.push_row(row.inputs, row.targets);
-                data.end_example(row.weight, subset);
-            }
-        }
-        Examples::Pixel(fragments) => {
-            pixel_example(data, pixel, subset, recipe.inputs.known_apart(), &fragments);
-        }
-    }
 }
 
 /// The fragments of a pixel whose share the network is asked for, with the inputs of each, and what the others contribute: those are `apart`

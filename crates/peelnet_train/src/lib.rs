@@ -7,14 +7,8 @@
 //!                                                                        loop ─► checkpoint, model file
 //! ```
 //!
-//! The modules in the order of the work: `loader` (`examples`, `table`, `scratch`), `sampler`, `loss` (`network`, `normalise`), `optimizer`,
-//! `training_loop` (`checkpoint`, `report`).
-//!
-//! [`train`] takes the examples of datasets ([`TrainingData`]) and a [`Config`] that holds every hyper-parameter and
-//! the seed. It sets the held-out rows aside, computes each input's mean and deviation over the training rows, and
-//! runs epochs: the examples are permuted (an order drawn from the seed and the epoch's number), batches are slices
-//! of the permuted tensors, and a batch's gradient goes to Adam. What a recipe is trained *on* is its rows or pixels in the table; what it
-//! minimises is in `loss`. The loop, the gradient, and checkpoints know nothing about recipes.
+//! [`train`] takes the examples of datasets ([`TrainingData`]) and a [`Config`]. What a recipe is trained *on* is its rows or pixels in the
+//! table; what it minimises is in `loss`. The loop, the gradient, and checkpoints know nothing about recipes.
 //!
 //! # What makes it fast
 //!
@@ -35,14 +29,9 @@
 //!
 //! Examples are in memory ([`TrainingData::from_datasets`]) or streamed ([`TrainingData::streamed`]).
 //!
-//! *In memory.* Rows are read part by part, and the examples made of them are kept in memory: once as columns, once normalised in the order of the
-//! epoch. Of a dataset with more than [`Config::max_rows`] rows, whole pixels are drawn from the seed, the same share of every view, and
-//! [`TrainingData::used`] says how many rows are used. With the default, a training takes about 4 GiB at most, however large the dataset.
-//!
-//! *Streamed.* One pass over the datasets makes the examples of all rows, merges the moments of the inputs block by block in the order of
-//! the parts, and writes the examples to a scratch file. An epoch reads its blocks in an order drawn from the seed and trains on windows
-//! of [`Config::buffer_rows`] rows, each permuted. Memory depends on the buffer; of the dataset it holds 24 bytes for each block
-//! of 4,096 rows, twice.
+//! In memory they are there twice: as columns, and normalised in the order of the epoch. Of a dataset with more than [`Config::max_rows`]
+//! rows, whole pixels are drawn from the seed, the same share of every view. Streamed, they lie in a scratch file, of which windows of
+//! [`Config::buffer_rows`] rows are in memory, and 24 bytes for each block of 4,096 rows, twice.
 //!
 //! # Same seed, same weights
 //!

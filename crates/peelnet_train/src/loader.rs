@@ -21,9 +21,6 @@ impl TrainingData {
     /// Of these, the shares [`Config::held_out`] and [`Config::validation`] are set aside: whole scenes where [`Config::split`] says so
     /// and there are enough of them, else whole pixels, whose fragments have their sum and count in common and say almost everything
     /// about one another. Each world of a synthetic dataset counts as a scene. [`TrainingData::split`] says what was done.
-    ///
-    /// # Errors
-    /// A dataset that cannot be read.
     pub fn from_datasets(config: &Config, datasets: &[Dataset]) -> Result<Self, TrainError> {
         let plan = Plan::new(config, datasets)?;
         let mut sample = Sample::new(config.seed, config.max_rows, plan.dataset.rows);
@@ -85,7 +82,8 @@ impl TrainingData {
             config.recipe,
             &mut data,
             plan.views,
-            &mut Sample::all(),
+            // All rows.
+            &mut Sample::new(0, u64::MAX, 0),
             |view, rows, data| {
                 if stop.load(Ordering::Relaxed) {
                     return Err(TrainError::Stopped);
@@ -256,9 +254,6 @@ fn split_name(dataset: &Dataset, part: &Part) -> String {
 /// network that predicts no transmittance.
 ///
 /// [`Metadata::held_out`]: peelnet_model::Metadata::held_out
-///
-/// # Errors
-/// A dataset that cannot be read.
 pub fn held_out_errors(
     model: &Model,
     datasets: &[Dataset],

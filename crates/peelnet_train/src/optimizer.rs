@@ -27,12 +27,7 @@ impl Adam {
     }
 
     pub(crate) fn step(&self, config: &Config, rate: f64, gradient: Tensor<1>) -> Self {
-        let Config {
-            beta1,
-            beta2,
-            epsilon,
-            ..
-        } = *config;
+        let (beta1, beta2) = (config.beta1, config.beta2);
         let steps = self.steps + 1;
         // 1 − βᵗ; beyond 2³¹ steps both are 1 to the last bit.
         let exponent = i32::try_from(steps).unwrap_or(i32::MAX);
@@ -40,7 +35,7 @@ impl Adam {
         let correction2 = 1.0 - beta2.powi(exponent);
         let first = self.first.clone() * beta1 + gradient.clone() * (1.0 - beta1);
         let second = self.second.clone() * beta2 + gradient.clone() * gradient * (1.0 - beta2);
-        let root = second.clone().sqrt() * (1.0 / correction2.sqrt()) + epsilon;
+        let root = second.clone().sqrt() * (1.0 / correction2.sqrt()) + config.epsilon;
         Self {
             parameters: self.parameters.clone() - first.clone() * (rate / correction1) / root,
             first,

@@ -11,6 +11,8 @@
 //!
 //! Nothing depends on the number of threads, and every example is in one window of an epoch.
 
+use std::sync::OnceLock;
+
 use burn::tensor::Device;
 use peelnet_dataset::Subset;
 
@@ -46,11 +48,11 @@ pub(crate) struct Feed<'a> {
     pub(crate) config: &'a Config,
     pub(crate) data: &'a TrainingData,
     pub(crate) device: &'a Device,
-    pub(crate) normalisation: &'a [Normalisation],
+    pub(crate) normalisation: Vec<Normalisation>,
     /// Those in memory.
     pub(crate) examples: [Vec<u32>; 3],
     /// Of subsets in memory whose order never changes.
-    pub(crate) loaded: [Option<Window>; 3],
+    pub(crate) loaded: [OnceLock<Window>; 3],
 }
 
 impl Feed<'_> {
@@ -63,13 +65,13 @@ impl Feed<'_> {
 
     /// Calls `each` with the windows of a pass over a subset, in the order of an epoch or in any.
     pub(crate) fn pass(
-        &mut self,
+        &self,
         subset: Subset,
         epoch: Option<u32>,
         mut each: impl FnMut(&Window) -> Result<(), TrainError>,
     ) -> Result<(), TrainError> {
         let window = |data: &TrainingData, order: &[u32]| {
-            Window::new(data, order, self.normalisation, self.device)
+            Window::new(data, order, &self.normalisation, self.device)
         };
         if let Some(scratch) = &self.data.scratch {
             let pass = (subset, epoch);
@@ -85,8 +87,8 @@ impl Feed<'_> {
                 each(&window(self.data, &order))
             }
             None => {
-                let loaded = &mut self.loaded[subset as usize];
-                each(loaded.get_or_insert_with(|| window(self.data, examples)))
+                let loaded = &self.loaded[subset as usize];
+                each(loaded.get_or_init(|| window(self.data, examples)))
             }
         }
     }
@@ -252,17 +254,15 @@ mod tests {
                 // All examples in order, and those of the first window.
                 let pass = |subset, epoch| {
                     let (mut all, mut first, mut is_whole) = (Vec::new(), BTreeSet::new(), true);
-                    let number = &mut 0;
                     windows(&scratch, &config, (subset, epoch), |buffer, order| {
                         assert!(is_whole, "only the last window has a part of a batch");
                         is_whole = subset != Subset::Train || order.len().is_multiple_of(batch);
                         let room = most as usize + 2 * BLOCK_ROWS + 24 * batch;
                         assert!(buffer.rows_held() <= room);
                         all.extend(order.iter().map(|&e| id(buffer, e)));
-                        if *number == 0 {
+                        if first.is_empty() {
                             first.extend(all.iter().copied());
                         }
-                        *number += 1;
                         Ok(())
                     })
                     .unwrap();

@@ -11,13 +11,12 @@ use peelnet_dataset::Subset;
 use peelnet_model::{Input, Losses, Metadata, Model};
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 
-use crate::checkpoint::{self, Progress, download};
+use crate::checkpoint::{self, Progress, download, upload};
 use crate::config::Config;
 use crate::error::{TrainError, io};
 use crate::lock::OutputLock;
 use crate::loss::Window;
 use crate::network::{Network, Shape};
-use crate::normalise::Normalisation;
 use crate::optimizer::Adam;
 use crate::report::{End, EpochReport, Outcome};
 use crate::sampler::{Feed, by_subset};
@@ -86,12 +85,17 @@ pub fn train(
     let device = Device::flex();
     let examples = by_subset(data, config);
     let run = Run {
+        feed: Feed {
+            config,
+            data,
+            device: &device,
+            normalisation: data.normalisation(&examples[Subset::Train as usize]),
+            examples,
+            loaded: Default::default(),
+        },
         config,
-        data,
-        normalisation: data.normalisation(&examples[Subset::Train as usize]),
         fingerprint: data.fingerprint(),
         options,
-        device: &device,
         threads: rayon::ThreadPoolBuilder::new()
             .num_threads(threads)
             .build()
@@ -99,36 +103,22 @@ pub fn train(
         shape: Shape::new(config),
         folder: checkpoint::folder(&options.out),
     };
-    let mut feed = Feed {
-        config,
-        data,
-        device: &device,
-        normalisation: &run.normalisation,
-        examples,
-        loaded: Default::default(),
-    };
-    run.go(&mut feed, on_epoch)
+    run.go(on_epoch)
 }
 
 /// What does not change during a run.
 struct Run<'a> {
+    feed: Feed<'a>,
     config: &'a Config,
-    data: &'a TrainingData,
-    normalisation: Vec<Normalisation>,
     fingerprint: String,
     options: &'a RunOptions<'a>,
-    device: &'a Device,
     threads: rayon::ThreadPool,
     shape: Shape,
     folder: PathBuf,
 }
 
 impl Run<'_> {
-    fn go(
-        &self,
-        feed: &mut Feed<'_>,
-        mut on_epoch: impl FnMut(&[EpochReport]),
-    ) -> Result<Outcome, TrainError> {
+    fn go(&self, mut on_epoch: impl FnMut(&[EpochReport])) -> Result<Outcome, TrainError> {
         let mut progress = self.start()?;
         let epochs = |progress: &Progress| progress.history.len() as u32;
         let resumed_from = self.options.resume.then(|| epochs(&progress));
@@ -143,7 +133,7 @@ impl Run<'_> {
             if done >= self.config.epochs {
                 break End::Finished;
             }
-            let epoch = self.threads.install(|| self.epoch(feed, &progress));
+            let epoch = self.threads.install(|| self.epoch(&progress));
             let (adam, report) = match epoch {
                 Err(TrainError::Stopped) => break End::Interrupted,
                 epoch => epoch?,
@@ -169,10 +159,10 @@ impl Run<'_> {
             _ => (epochs(&progress), &progress.adam.parameters),
         };
         let mut model = self.model(model_epoch, parameters, &progress.history);
-        if feed.examples(Subset::Validation) > 0 {
+        if self.feed.examples(Subset::Validation) > 0 {
             let losses = &mut model.meta.losses;
             losses.validation = losses.validation.or(losses.test);
-            let test = || self.mean_loss(feed, parameters, Subset::Test);
+            let test = || self.mean_loss(parameters, Subset::Test);
             losses.test = self.threads.install(test)?;
         }
         if end != End::Interrupted {
@@ -196,7 +186,7 @@ impl Run<'_> {
                 self.config,
                 &self.fingerprint,
                 self.shape.parameters(),
-                self.device,
+                self.feed.device,
             );
         }
         // An earlier run's model files must not pass for this run's.
@@ -207,30 +197,28 @@ impl Run<'_> {
                 _ => {}
             }
         }
-        let progress = Progress::new(self.shape.initial(self.config.seed), self.device);
+        let initial = self.shape.initial(self.config.seed);
+        let progress = Progress {
+            adam: Adam::new(upload(initial, self.feed.device)),
+            best: None,
+            history: Vec::new(),
+        };
         // Reports now, and not after the last epoch, that the folder cannot be written.
         self.save(&progress)?;
         Ok(progress)
     }
 
     /// One pass over the training examples and one over the held-out ones.
-    ///
-    /// # Errors
-    /// [`TrainError::Stopped`] when asked to stop, and those of the feed.
-    fn epoch(
-        &self,
-        feed: &mut Feed<'_>,
-        progress: &Progress,
-    ) -> Result<(Adam, EpochReport), TrainError> {
+    fn epoch(&self, progress: &Progress) -> Result<(Adam, EpochReport), TrainError> {
         let config = self.config;
         let epoch = progress.history.len() as u32 + 1;
-        let examples = feed.examples(Subset::Train);
+        let examples = self.feed.examples(Subset::Train);
         let steps = examples.div_ceil(config.batch as u64) * u64::from(config.epochs);
         let begin = Instant::now();
         let mut adam = progress.adam.clone();
         let count = self.shape.parameters();
         let mut loss = 0.0;
-        feed.pass(Subset::Train, Some(epoch), |window| {
+        self.feed.pass(Subset::Train, Some(epoch), |window| {
             let mut losses = Vec::with_capacity(window.examples.div_ceil(config.batch));
             for first in (0..window.examples).step_by(config.batch) {
                 if self.options.stop.load(Ordering::Relaxed) {
@@ -251,8 +239,8 @@ impl Run<'_> {
         })?;
         let seconds = begin.elapsed().as_secs_f64();
         // The validation examples judge, or the test examples where there are none.
-        let held_out_loss = match self.mean_loss(feed, &adam.parameters, Subset::Validation)? {
-            None => self.mean_loss(feed, &adam.parameters, Subset::Test)?,
+        let held_out_loss = match self.mean_loss(&adam.parameters, Subset::Validation)? {
+            None => self.mean_loss(&adam.parameters, Subset::Test)?,
             loss => loss,
         };
         let mut report = EpochReport {
@@ -271,15 +259,10 @@ impl Run<'_> {
     }
 
     /// Mean loss of a subset; none when it is empty.
-    fn mean_loss(
-        &self,
-        feed: &mut Feed<'_>,
-        parameters: &Tensor<1>,
-        subset: Subset,
-    ) -> Result<Option<f64>, TrainError> {
-        let examples = feed.examples(subset);
+    fn mean_loss(&self, parameters: &Tensor<1>, subset: Subset) -> Result<Option<f64>, TrainError> {
+        let examples = self.feed.examples(subset);
         let mut sum = 0.0;
-        feed.pass(subset, None, |window| {
+        self.feed.pass(subset, None, |window| {
             sum += total(self.chunks(0..window.examples, |range| {
                 let network = Network::new(&self.shape, parameters);
                 window.loss_sum(&network, range, self.config.loss)
@@ -339,14 +322,11 @@ impl Run<'_> {
 
     /// Saves the state and the two model files made from it.
     fn save(&self, progress: &Progress) -> Result<(), TrainError> {
-        let Progress {
-            adam,
-            best,
-            history,
-        } = progress;
         progress.save(&self.folder, self.config, &self.fingerprint)?;
-        let last = ("last", history.len() as u32, &adam.parameters);
-        let best = best.iter().map(|(epoch, best)| ("best", *epoch, best));
+        let history = &progress.history;
+        let last = ("last", history.len() as u32, &progress.adam.parameters);
+        let best = progress.best.iter();
+        let best = best.map(|(epoch, best)| ("best", *epoch, best));
         let models = best.chain([last]).filter(|_| !history.is_empty());
         for (name, epoch, parameters) in models {
             let path = self.folder.join(name).with_extension("safetensors");
@@ -361,7 +341,7 @@ impl Run<'_> {
         let chosen_by_it = self.config.patience.is_some();
         let recipe = self.config.recipe;
         let about = recipe.inputs.features();
-        let inputs = about.iter().zip(&self.normalisation);
+        let inputs = about.iter().zip(&self.feed.normalisation);
         let inputs = inputs.map(|(about, n)| Input {
             name: about.name.to_owned(),
             unit: about.unit.to_owned(),
@@ -374,7 +354,7 @@ impl Run<'_> {
         // See `Normalisation::from_moments`: an input that never varied must not matter.
         let first = &mut mlp.layers[0];
         for row in first.weights.chunks_exact_mut(first.inputs) {
-            for (weight, n) in row.iter_mut().zip(&self.normalisation) {
+            for (weight, n) in row.iter_mut().zip(&self.feed.normalisation) {
                 if n.constant {
                     *weight = 0.0;
                 }
@@ -389,7 +369,7 @@ impl Run<'_> {
                 inputs: inputs.collect(),
                 output: recipe.output,
                 seed: self.config.seed,
-                dataset: self.data.dataset.clone(),
+                dataset: self.feed.data.dataset.clone(),
                 epochs: epoch,
                 losses: Losses {
                     train: row.map(|r| r.train_loss),

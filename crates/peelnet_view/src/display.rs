@@ -75,7 +75,8 @@ impl Display {
                 resolve_target: None,
                 ops: wgpu::Operations::default(),
             };
-            pass.draw(&mut Recorder::new(gpu, encoder, None), &[Some(target)]);
+            let mut recorder = Recorder::new(gpu, encoder, None);
+            pass.draw(&mut recorder, &[Some(target)], None);
         }
         Ok(())
     }

@@ -1,6 +1,7 @@
 // S-buffer: composites each sorted run front to back over C_0 (under-blending).
 //
 // Where runs are long, sums are compensated (Kahan 1965): their error does not grow with the number of fragments.
+// Loops: 1: PIECE fragments, or SHORT.
 // Variants: none | tinted | long | tinted long
 import package::peel::runs::{Run, background, camera, carried, carry, fragments, is_in_pieces, last_piece, run_of, slot_at};
 

@@ -1,4 +1,5 @@
 // avboit, between its passes: a column's sums become the mean absorbance of its pixels from the near end to the far end of each slice.
+// Loops: 1: the parameter slices, at most 1,024.
 import package::methods::avboit::grid::{UNIT, columns, first_slice};
 import package::parameters::{CELL, SLICES};
 

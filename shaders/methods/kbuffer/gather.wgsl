@@ -1,4 +1,5 @@
 // kbuffer and hybrid, pass 2: a fragment among the K nearest stores its colour in its place, any other one is blended.
+// Loops: 2: K, at most 64; ATTEMPTS.
 // Variants: unweighted | eq7 | eq8 | eq9 | unweighted half_colors | eq9 byte_colors
 import package::helpers::stored::{Stored, stored};
 import package::helpers::weights::{weight_eq7, weight_eq8, weight_eq9};

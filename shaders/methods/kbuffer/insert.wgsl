@@ -2,6 +2,7 @@
 //
 // Each value goes to the first place where it is larger and carries what it displaces on to the next (the way of nvpro's
 // "Loop32" sample): whatever the order in which fragments arrive, the places end up sorted.
+// Loops: 1: K, at most 64.
 import package::parameters::K;
 import package::methods::kbuffer::key::{first_place, nearness};
 import package::scene::surface::Surface;

@@ -1,4 +1,5 @@
 // kbuffer and hybrid: the K nearest exactly, in front of the blended tail, in front of C_0.
+// Loops: 2: K, at most 64.
 // Variants: none | half_colors | byte_colors
 import package::helpers::resolve::normalised;
 import package::helpers::stored::{Stored, restored};

@@ -1,4 +1,5 @@
 // linked-list: sorts each pixel's list by (linear depth, triangle) and composites it front to back over C_0.
+// Loops: 5: LONGEST nodes, and log2 of that.
 // Variants: none | tinted | half_colors | byte_colors | tinted half_colors
 import package::helpers::stored::{Stored, restored};
 import package::scene::camera::Camera;

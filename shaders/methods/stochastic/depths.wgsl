@@ -1,4 +1,5 @@
 // stochastic, pass 1: the nearest depth of every sample, and the transmittance of the whole pixel.
+// Loops: 1: SAMPLES, at most 256.
 import package::methods::stochastic::samples::{covered, sample};
 import package::scene::shade::opacity;
 import package::scene::surface::Surface;

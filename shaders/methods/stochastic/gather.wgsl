@@ -1,5 +1,6 @@
 // stochastic, pass 2: eq 6 with the share of samples that see the fragment as its weighted opacity. The resolve scales
 // their sum to the coverage, which is exact (Enderton et al. 2010, "alpha correction").
+// Loops: 1: SAMPLES, at most 256.
 import package::methods::stochastic::samples::{covered, sample};
 import package::parameters::SAMPLES;
 import package::scene::shade::shade;

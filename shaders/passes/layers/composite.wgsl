@@ -1,6 +1,7 @@
 // The view of layers (of a renderer of ageing materials, 2018): the nearest fragment of the highlighted layer takes the share
 // HIGHLIGHT_SHARE of the pixel, all in front of it the rest in equal parts, and what lies behind is not seen. `printed` is that
 // renderer's formula as it stands in print: all others are seen, and the rest is divided by the number of all fragments.
+// Loops: 1: PIECE fragments, or SHORT.
 // Variants: none | increasing | printed | increasing printed | long | long increasing | long printed | long increasing printed
 import package::parameters::{HIGHLIGHT, HIGHLIGHT_SHARE};
 import package::peel::runs::{Run, background, carried, carry, fragments, is_in_pieces, last_piece, run_of, slot_at};

@@ -1,6 +1,7 @@
 // Transparency drawn at a lower resolution over the full image. What is interpolated is normalised: premultiplied colour and
 // coverage, never sums. Where there are opaque surfaces, a sample counts by how near its opaque depth is to the pixel's
 // (joint bilateral upsampling, Kopf et al. 2007).
+// Loops: 1: 4 texels.
 @if(opaque) import package::scene::camera::Camera;
 
 // The full resolution in pixels.

@@ -1,4 +1,5 @@
 // Two hashes of the names of a pixel's surfaces in sorted order, and the number of its fragments.
+// Loops: 1: PIECE fragments, or SHORT.
 // Variants: none | long
 import package::helpers::hash::pcg;
 import package::peel::runs::{Run, carried, carry, fragments, is_in_pieces, last_piece, run_of, slot_at};

@@ -45,10 +45,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let path = path.unwrap_or_else(|| "own_renderer.png".into());
     image::save_buffer(&path, &pixels, SIZE, SIZE, image::ColorType::Rgba8)?;
     let middle = 4 * (SIZE * SIZE / 2 + SIZE / 2) as usize;
-    let color: Vec<f32> = pixels[middle..middle + 3]
-        .iter()
-        .map(|&v| f32::from(v) / 255.0)
-        .collect();
+    let color = [0, 1, 2].map(|channel| f32::from(pixels[middle + channel]) / 255.0);
     println!("{path}: {color:.4?} in the middle, where it is [0.6125, 0.3625, 0.2375] exactly");
     Ok(())
 }

@@ -9,7 +9,6 @@ pub const SIZE: u32 = 256;
 
 /// A texture that passes draw into and read.
 pub struct Target {
-    texture: wgpu::Texture,
     view: wgpu::TextureView,
     clear: wgpu::Color,
     blend: Option<BlendState>,
@@ -46,7 +45,6 @@ impl Target {
         };
         Self {
             view: texture.create_view(&wgpu::TextureViewDescriptor::default()),
-            texture,
             clear,
             blend: blend.map(|(color, alpha)| BlendState {
                 color: part(color),
@@ -82,49 +80,45 @@ impl Program {
         })
     }
 
-    fn pipeline(&self, [vertex, fragment]: [&str; 2], targets: &[&Target]) -> wgpu::RenderPipeline {
-        let states = targets.iter().map(|target| {
-            Some(wgpu::ColorTargetState {
-                blend: target.blend,
-                ..target.texture.format().into()
-            })
-        });
-        self.device
-            .create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-                label: Some(fragment),
-                layout: None,
-                vertex: wgpu::VertexState {
-                    module: &self.module,
-                    entry_point: Some(vertex),
-                    compilation_options: wgpu::PipelineCompilationOptions::default(),
-                    buffers: &[],
-                },
-                primitive: wgpu::PrimitiveState {
-                    topology: wgpu::PrimitiveTopology::TriangleStrip,
-                    ..Default::default()
-                },
-                depth_stencil: None,
-                multisample: wgpu::MultisampleState::default(),
-                fragment: Some(wgpu::FragmentState {
-                    module: &self.module,
-                    entry_point: Some(fragment),
-                    compilation_options: wgpu::PipelineCompilationOptions::default(),
-                    targets: &states.collect::<Vec<_>>(),
-                }),
-                multiview_mask: None,
-                cache: None,
-            })
-    }
-
     /// A pass over strips of four vertices, by a vertex and a fragment shader that read textures by their bindings.
     pub fn draw(
         &mut self,
-        entry_points: [&str; 2],
+        [vertex, fragment]: [&str; 2],
         strips: u32,
         reads: &[(u32, &Target)],
         targets: &[&Target],
     ) {
-        let pipeline = self.pipeline(entry_points, targets);
+        let states = targets.iter().map(|target| {
+            Some(wgpu::ColorTargetState {
+                blend: target.blend,
+                ..target.view.texture().format().into()
+            })
+        });
+        let pipeline_descriptor = wgpu::RenderPipelineDescriptor {
+            label: Some(fragment),
+            layout: None,
+            vertex: wgpu::VertexState {
+                module: &self.module,
+                entry_point: Some(vertex),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                buffers: &[],
+            },
+            primitive: wgpu::PrimitiveState {
+                topology: wgpu::PrimitiveTopology::TriangleStrip,
+                ..Default::default()
+            },
+            depth_stencil: None,
+            multisample: wgpu::MultisampleState::default(),
+            fragment: Some(wgpu::FragmentState {
+                module: &self.module,
+                entry_point: Some(fragment),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                targets: &states.collect::<Vec<_>>(),
+            }),
+            multiview_mask: None,
+            cache: None,
+        };
+        let pipeline = self.device.create_render_pipeline(&pipeline_descriptor);
         let attachments = targets.iter().map(|target| {
             Some(wgpu::RenderPassColorAttachment {
                 view: &target.view,
@@ -165,7 +159,7 @@ impl Program {
             mapped_at_creation: false,
         });
         self.encoder.copy_texture_to_buffer(
-            picture.texture.as_image_copy(),
+            picture.view.texture().as_image_copy(),
             wgpu::TexelCopyBufferInfo {
                 buffer: &buffer,
                 layout: wgpu::TexelCopyBufferLayout {
@@ -173,7 +167,7 @@ impl Program {
                     ..Default::default()
                 },
             },
-            picture.texture.size(),
+            picture.view.texture().size(),
         );
         self.queue.submit([self.encoder.finish()]);
         buffer.map_async(wgpu::MapMode::Read, .., |_| ());

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
 
-use super::part_file::{PartSink, PartSource, check_names};
+use super::{PartSink, PartSource, check_names};
 use crate::column::{Column, ColumnMut, ColumnSlice, FragmentBatch};
 use crate::error::DatasetError;
 use crate::store::Fetched;
@@ -182,7 +182,7 @@ impl PartSource for CsvSource {
                 break;
             }
             for &column in &self.columns {
-                let field = &self.record[column.index()];
+                let field = &self.record[column as usize];
                 let text = std::str::from_utf8(field).ok();
                 let parsed = match rows.column_mut(column) {
                     ColumnMut::F32(v) => text.and_then(|t| t.parse().ok()).map(|x| v.push(x)),
@@ -190,7 +190,8 @@ impl PartSource for CsvSource {
                 };
                 if parsed.is_none() {
                     let line = self.record.position().map_or(0, csv::Position::line);
-                    let (text, kind) = (String::from_utf8_lossy(field), column.kind().name());
+                    let kind = format!("{:?}", column.kind()).to_lowercase();
+                    let text = String::from_utf8_lossy(field);
                     let text = peelnet_core::files::printable(&text);
                     let reason = format!(
                         "line {line}, column {column}: {text:?} is not a number of type {kind}; fix the line or write the dataset again"

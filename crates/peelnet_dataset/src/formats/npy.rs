@@ -8,7 +8,7 @@ use std::fs::File;
 use std::io::{BufReader, BufWriter, Read as _, Seek as _, Write as _};
 use std::path::PathBuf;
 
-use super::part_file::{PartSink, PartSource};
+use super::{PartSink, PartSource};
 use crate::column::{Column, ColumnKind, ColumnMut, ColumnSlice, FragmentBatch};
 use crate::error::DatasetError;
 use crate::store::Fetched;
@@ -87,43 +87,37 @@ impl NpySource {
         columns: &[Column],
         rows: u64,
     ) -> Result<Self, DatasetError> {
-        let open = files.iter().zip(columns);
-        let open = open.map(|(file, &column)| Self::open_column(file, column, rows));
+        let mut open = Vec::new();
+        for (file, &column) in files.iter().zip(columns) {
+            let path = file.shown.clone();
+            let file = file.open()?;
+            let length = file.metadata().map_err(DatasetError::io(&path, "read"))?;
+            let length = length.len();
+            let mut file = BufReader::with_capacity(BUFFER, file);
+            let mut found = Vec::new();
+            let head = file.by_ref().take(HEADER as u64).read_to_end(&mut found);
+            head.map_err(DatasetError::io(&path, "read"))?;
+            // NumPy ends the dictionary with a comma and a space.
+            let expected = header(column.kind(), rows);
+            let text = |header: &[u8]| {
+                let text = String::from_utf8_lossy(header);
+                text.replace(", }", "}").trim_end().to_owned()
+            };
+            let needed = rows.saturating_mul(4).saturating_add(HEADER as u64);
+            if text(&found) != text(&expected) || length != needed {
+                let reason = format!(
+                    "not an NPY file of column {column}: {rows} rows need {needed} bytes with the header {:?}, and it has {length} with {:?}; write the dataset again",
+                    text(&expected[10..]),
+                    peelnet_core::files::printable(&text(found.get(10..).unwrap_or_default())),
+                );
+                return Err(DatasetError::invalid(&path, reason));
+            }
+            open.push((column, path, file));
+        }
         Ok(Self {
-            columns: open.collect::<Result<_, _>>()?,
+            columns: open,
             left: rows,
         })
-    }
-
-    fn open_column(
-        file: &Fetched,
-        column: Column,
-        rows: u64,
-    ) -> Result<(Column, PathBuf, BufReader<File>), DatasetError> {
-        let path = file.shown.clone();
-        let file = file.open()?;
-        let length = file.metadata().map_err(DatasetError::io(&path, "read"))?;
-        let length = length.len();
-        let mut file = BufReader::with_capacity(BUFFER, file);
-        let mut found = Vec::new();
-        let head = file.by_ref().take(HEADER as u64).read_to_end(&mut found);
-        head.map_err(DatasetError::io(&path, "read"))?;
-        // NumPy ends the dictionary with a comma and a space.
-        let expected = header(column.kind(), rows);
-        let text = |header: &[u8]| {
-            let text = String::from_utf8_lossy(header);
-            text.replace(", }", "}").trim_end().to_owned()
-        };
-        let needed = rows.saturating_mul(4).saturating_add(HEADER as u64);
-        if text(&found) != text(&expected) || length != needed {
-            let reason = format!(
-                "not an NPY file of column {column}: {rows} rows need {needed} bytes with the header {:?}, and it has {length} with {:?}; write the dataset again",
-                text(&expected[10..]),
-                peelnet_core::files::printable(&text(found.get(10..).unwrap_or_default())),
-            );
-            return Err(DatasetError::invalid(&path, reason));
-        }
-        Ok((column, path, file))
     }
 }
 

@@ -28,7 +28,7 @@ use parquet::schema::types::{ColumnDescPtr, Type, TypePtr};
 
 use rayon::prelude::*;
 
-use super::part_file::{PartSink, PartSource, check_names};
+use super::{PartSink, PartSource, check_names};
 use crate::column::{Column, ColumnKind, ColumnMut, ColumnSlice, FragmentBatch};
 use crate::error::DatasetError;
 use crate::store::Fetched;
@@ -101,7 +101,7 @@ impl ParquetSink {
         let descriptors = self.writer.schema_descr().columns().to_vec();
         let properties = self.writer.properties().clone();
         let encoded = Column::ALL.into_par_iter().map(|column| {
-            let descriptor = &descriptors[column.index()];
+            let descriptor = &descriptors[column as usize];
             encode(descriptor, &properties, rows.column(column))
         });
         let append = || -> Result<(), ParquetError> {
@@ -289,7 +289,7 @@ impl PartSource for ParquetSource {
                 DatasetError::invalid(&self.path, "a row group has a negative number of rows")
             })?;
             let columns = self.columns.iter();
-            let readers = columns.map(|c| group.get_column_reader(c.index()));
+            let readers = columns.map(|&c| group.get_column_reader(c as usize));
             let readers = readers.collect::<Result<_, _>>();
             self.readers = readers.map_err(|e| read_error(&self.path, e))?;
             self.next_group += 1;

@@ -152,7 +152,7 @@ fn files_that_were_changed() {
         let folder = temporary();
         let manifest = write(folder.path(), format).unwrap();
         let entry = match format {
-            Format::Npy => Column::LinearDepth.index(),
+            Format::Npy => Column::LinearDepth as usize,
             _ => 0,
         };
         let file = manifest.parts[2].files[entry].name.as_str();

@@ -27,7 +27,8 @@ fn view(index: u32, pixels: u32, seed: u64) -> FragmentBatch {
         let mut depth = 0.5f32;
         let fragment = |_| {
             depth += random.unit();
-            PeeledFragment::new(depth, palette[random.below(16)])
+            let color = palette[random.below(16)];
+            PeeledFragment { depth, color }
         };
         let fragments: Vec<PeeledFragment> = (0..n).map(fragment).collect();
         let pixel = [index, p % 640, p / 640];

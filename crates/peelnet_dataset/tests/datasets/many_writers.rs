@@ -99,8 +99,7 @@ fn writers_together_write_the_whole() {
         let folder = folder.path();
         killed(folder, by("first", format), &[0, 2]);
         let words = [
-            "2 of 4 parts are missing",
-            "the first is 1",
+            "2 of 4 parts are missing, the first is 1",
             "--resume",
             "peelnet seal",
         ];
@@ -126,18 +125,7 @@ fn writers_together_write_the_whole() {
     // Resuming where nothing is begins: a scheduler need not know whether a task ran before.
     let folder = temporary();
     assert!(resume(folder.path(), "a").unwrap().is_whole() && is_sealed(folder.path()));
-    let wrong = [
-        "",
-        "1",
-        "0/4",
-        "5/4",
-        "1/0",
-        "a/2",
-        "-1/2",
-        "1/2/3",
-        "1/4294967295",
-    ];
-    for text in wrong {
+    for text in ",1,0/4,5/4,1/0,a/2,-1/2,1/2/3,1/4294967295".split(',') {
         has(&text.parse::<Shard>().unwrap_err(), &["I/N"]);
     }
     assert_eq!("2/4".parse::<Shard>().unwrap().to_string(), "2/4");
@@ -232,28 +220,18 @@ fn what_is_wrong_with_a_part_is_named() {
     let other = fs::read_to_string(other).unwrap();
     let good = fs::read_to_string(&record).unwrap();
     let altered = |from: &str, to: &str| good.replace(from, to);
-    for (text, words) in [
-        (other, ["part 1", "node-a", "of part 2"]),
-        (
-            altered("\"plan\": \"", "\"plan\": \"0"),
-            ["part 1", "node-a", "another plan"],
-        ),
-        (
-            good[..good.len() / 2].to_owned(),
-            ["00001.json", "JSON", "line"],
-        ),
-        (
-            altered("\"rows\": ", "\"rows\": 9"),
-            ["parts", "parts[1]", "rows"],
-        ),
-        (
-            altered("\"schema\": 2", "\"schema\": 3"),
-            ["schema version 3", "00001.json", "version 2"],
-        ),
-    ] {
+    let refused = |text: &str, words: [&str; 3]| {
         fs::write(&record, text).unwrap();
         sealing_fails(folder, &words);
-    }
+    };
+    refused(&other, ["part 1", "node-a", "of part 2"]);
+    let plan = altered("\"plan\": \"", "\"plan\": \"0");
+    refused(&plan, ["part 1", "node-a", "another plan"]);
+    refused(&good[..good.len() / 2], ["00001.json", "JSON", "line"]);
+    let rows = altered("\"rows\": ", "\"rows\": 9");
+    refused(&rows, ["parts", "parts[1]", "rows"]);
+    let schema = altered("\"schema\": 2", "\"schema\": 3");
+    refused(&schema, ["schema version 3", "00001.json", "version 2"]);
     fs::write(&record, &good).unwrap();
     let plan = folder.join("_peelnet/plan.json");
     let text = fs::read_to_string(&plan).unwrap();

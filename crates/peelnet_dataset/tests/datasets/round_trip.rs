@@ -163,12 +163,12 @@ fn statistics_say_which_view_is_where() {
         .unwrap();
     let mut first_row = 0;
     for (k, group) in metadata.row_groups().iter().enumerate() {
-        let statistics = group.column(Column::View.index()).statistics().unwrap();
+        let statistics = group.column(Column::View as usize).statistics().unwrap();
         let ends = [statistics.min_bytes_opt(), statistics.max_bytes_opt()];
         assert_eq!(ends, [Some(&[0; 4][..]); 2]);
         // Pages of image rows: what each may hold is known, and where it lies.
         let pages = metadata.page_index_for_row_group(k);
-        let y = Column::Y.index();
+        let y = Column::Y as usize;
         let Some(ColumnIndexMetaData::INT32(index)) = pages.column_index(y) else {
             panic!("no index of pages")
         };

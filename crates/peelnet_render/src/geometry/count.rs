@@ -3,7 +3,6 @@
 use crate::geometry::{
     FrameTargets, GeometryPass, GeometryPipelines, Needs, RenderError, SceneBuffers,
     frame::{unwritten_attachment, unwritten_texture},
-    long_runs::{self, kernel},
 };
 use crate::gpu::{Kernel, bind::Bind, groups_2d, record::Recorder, wgpu};
 
@@ -24,12 +23,12 @@ pub struct CountPass {
     pub counts: wgpu::Buffer,
     /// First fragment of each pixel; one entry more than pixels, the last one the total.
     pub offsets: wgpu::Buffer,
-    /// See [`Self::found`].
+    /// See [`Self::parse`].
     pub total: wgpu::Buffer,
     /// What is wrong with the frame's fragments, see [`Self::check`].
     pub faults: wgpu::Buffer,
-    // A pass needs an attachment; nothing is written to this one.
-    attachment: wgpu::TextureView,
+    /// See [`unwritten_attachment`].
+    pub(crate) attachment: wgpu::TextureView,
     pipelines: GeometryPipelines,
     /// With the threads of each.
     kernels: [(Kernel, u32); 3],
@@ -62,17 +61,18 @@ impl CountPass {
         let pipelines = scene.pipelines(frame, &pass)?;
         let extent = [pixels, blocks_count, groups_2d(blocks_count)[0], 0];
         let extent = gpu.upload("extent", &extent, wgpu::BufferUsages::UNIFORM);
-        let extent = Bind::Uniform(&extent);
-        let parameters = long_runs::parameters();
-        let kernel = |shader, entries: &[_]| kernel(gpu, shader, &[], &parameters, entries);
-        let scan = [extent, Bind::Read(&counts), Bind::Write(&blocks)];
-        let top = [extent, Bind::Write(&blocks), Bind::Write(&total)];
-        let (counted, of_blocks) = (Bind::Read(&counts), Bind::Read(&blocks));
-        let sums = [extent, counted, of_blocks, Bind::Write(&offsets)];
+        let named = [
+            ("extent", Bind::Buffer(&extent)),
+            ("counts", Bind::Buffer(&counts)),
+            ("blocks", Bind::Buffer(&blocks)),
+            ("total", Bind::Buffer(&total)),
+            ("offsets", Bind::Buffer(&offsets)),
+        ];
+        let kernel = |shader| Kernel::link(gpu, shader, &[], &[], &named);
         let kernels = [
-            (kernel("peel::scan_blocks", &scan)?, blocks_count),
-            (kernel("peel::scan_top", &top)?, 1),
-            (kernel("peel::scan_pixels", &sums)?, blocks_count),
+            (kernel("peel::scan_blocks")?, blocks_count),
+            (kernel("peel::scan_top")?, 1),
+            (kernel("peel::scan_pixels")?, blocks_count),
         ];
         Ok(Self {
             counts,
@@ -89,8 +89,9 @@ impl CountPass {
     pub fn encode(&self, recorder: &mut Recorder<'_>, scene: &SceneBuffers, frame: &FrameTargets) {
         recorder.encoder().clear_buffer(&self.counts, 0, None);
         recorder.encoder().clear_buffer(&self.faults, 0, None);
+        let attachment = unwritten_attachment(&self.attachment);
         {
-            let mut pass = recorder.render("count", &[self.attachment()], None);
+            let mut pass = recorder.render("count", &[attachment], None);
             scene.draw(&mut pass, frame, &self.pipelines);
         }
         for (kernel, threads) in &self.kernels {
@@ -134,23 +135,5 @@ impl CountPass {
             pixel % width,
             pixel / width
         )))
-    }
-
-    /// Counts a frame, submits and reads the result back.
-    #[cfg(not(target_arch = "wasm32"))]
-    pub fn run(
-        &self,
-        recorder: &mut Recorder<'_>,
-        scene: &SceneBuffers,
-        frame: &FrameTargets,
-    ) -> Result<FragmentCount, RenderError> {
-        self.encode(recorder, scene, frame);
-        recorder.submit();
-        Self::parse(&scene.gpu.read(&self.total, 0..self.total.size())?)
-    }
-
-    /// The attachment of passes that write storage only.
-    pub fn attachment(&self) -> Option<wgpu::RenderPassColorAttachment<'_>> {
-        unwritten_attachment(&self.attachment)
     }
 }

@@ -154,15 +154,10 @@ impl SceneBuffers {
     pub(crate) fn upload_lights(&mut self) -> Result<(), RenderError> {
         check_lights(&self.scene.lights)?;
         let drawn = self.parts.iter().filter(|p| !p.run.vertices.is_empty());
-        let is_lit = drawn
-            .into_iter()
-            .any(|p| p.run.variant.contains(MaterialFlags::LIT));
-        let lights: Vec<_> = self
-            .scene
-            .lights
-            .iter()
-            .map(LightData::from_light)
-            .collect();
+        let mut variants = drawn.map(|p| p.run.variant);
+        let is_lit = variants.any(|variant| variant.contains(MaterialFlags::LIT));
+        let lights = self.scene.lights.iter();
+        let lights: Vec<_> = lights.map(LightData::from_light).collect();
         let bytes: &[u8] = bytemuck::cast_slice(&lights);
         match &self.lights {
             Some(buffer) if buffer.size() >= bytes.len() as u64 => {

@@ -1,6 +1,6 @@
 //! The targets of one frame size, and where the finished picture goes.
 
-use crate::geometry::{GeometryPipelines, RenderError, SceneBuffers};
+use crate::geometry::{GeometryPass, GeometryPipelines, RenderError, SceneBuffers};
 use crate::gpu::{Gpu, bind::Bound, wgpu};
 
 /// Where the finished picture goes, as pipelines need to know it.
@@ -33,19 +33,16 @@ impl Output {
     pub fn state(self) -> wgpu::ColorTargetState {
         match self {
             Self::Image => IMAGE.into(),
-            // The background is in the pixel: it is opaque, as its target was cleared.
-            Self::Target {
-                format,
-                over: false,
-                ..
-            } => wgpu::ColorTargetState {
-                write_mask: wgpu::ColorWrites::COLOR,
-                ..format.into()
-            },
-            Self::Target { format, .. } => wgpu::ColorTargetState {
-                blend: Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
-                ..format.into()
-            },
+            Self::Target { format, over, .. } => {
+                let mut state = wgpu::ColorTargetState::from(format);
+                if over {
+                    state.blend = Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING);
+                } else {
+                    // The background is in the pixel: it is opaque, as its target was cleared.
+                    state.write_mask = wgpu::ColorWrites::COLOR;
+                }
+                state
+            }
         }
     }
 
@@ -80,11 +77,7 @@ impl OpaqueDepth {
 
     /// The shader features of passes that compare with it.
     pub(crate) fn features(&self) -> &'static [&'static str] {
-        if self.samples() > 1 {
-            &["opaque", "multisampled"]
-        } else {
-            &["opaque"]
-        }
+        &["opaque", "multisampled"][..1 + usize::from(self.samples() > 1)]
     }
 }
 
@@ -142,20 +135,16 @@ impl SceneBuffers {
             )));
         }
         let none = wgpu::TextureUsages::empty();
-        let depth = match depth {
-            Some(view) => Some(OpaqueDepth {
-                view: view.clone(),
-                is_callers: true,
-            }),
+        let is_callers = depth.is_some();
+        let view = match depth {
+            Some(view) => Some(view.clone()),
             None if self.has_opaque() => {
                 let (format, samples) = (wgpu::TextureFormat::Depth32Float, output.opaque().1);
-                Some(OpaqueDepth {
-                    view: gpu.texture("opaque depth", format, size, samples, none)?,
-                    is_callers: false,
-                })
+                Some(gpu.texture("opaque depth", format, size, samples, none)?)
             }
             None => None,
         };
+        let depth = view.map(|view| OpaqueDepth { view, is_callers });
         let [opaque_group, scene_group] = self.groups(depth.as_ref());
         let background = if output.is_over() { [1, 1] } else { size };
         let mut frame = FrameTargets {
@@ -172,7 +161,19 @@ impl SceneBuffers {
             opaque_group,
             opaque: None,
         };
-        frame.opaque = self.opaque_pipelines(&frame)?;
+        if let Some(depth) = frame.depth.as_ref().filter(|_| self.has_opaque()) {
+            let (color, samples) = output.opaque();
+            let pass = GeometryPass {
+                label: "opaque",
+                shader: "scene::opaque",
+                opaque: true,
+                targets: &[Some(color.into())],
+                depth: Some(depth_state(depth.view.texture().format())),
+                samples,
+                ..GeometryPass::NONE
+            };
+            frame.opaque = Some(self.pipelines(&frame, &pass)?);
+        }
         Ok(frame)
     }
 }

@@ -49,16 +49,8 @@ impl FullscreenPass {
         })
     }
 
+    /// Records the pass, over a rectangle where there is one: x, y, width, height.
     pub fn draw(
-        &self,
-        recorder: &mut Recorder<'_>,
-        colors: &[Option<wgpu::RenderPassColorAttachment<'_>>],
-    ) {
-        self.draw_within(recorder, colors, None);
-    }
-
-    /// Records the pass over a rectangle: x, y, width, height.
-    pub fn draw_within(
         &self,
         recorder: &mut Recorder<'_>,
         colors: &[Option<wgpu::RenderPassColorAttachment<'_>>],

@@ -3,16 +3,9 @@
 //! A thread that sorts or composites thousands of fragments holds its neighbours up, on some systems until a watchdog ends it, and software
 //! rasterisers end long loops without an error. Every loop of these kernels is bounded by a constant of `shaders/peel`.
 
-use crate::geometry::{
-    RenderError,
-    fragments::{FragmentStorage, Tile},
-};
-use crate::gpu::{
-    Gpu, Kernel,
-    bind::{Bind, numbered},
-    record::Recorder,
-    wgpu,
-};
+use crate::geometry::{RenderError, fragments::Tile};
+use crate::gpu::{Gpu, Kernel, bind::Bind, record::Recorder, wgpu};
+use crate::shaders::ShaderError;
 
 /// Fragments of a run that one thread sorts at most: two windows, and few enough that its neighbours do not wait long. Scenes of 100 layers are
 /// faster with it than with one thread for all, on a software rasteriser; where the border is best was not searched.
@@ -40,11 +33,11 @@ pub(crate) fn kernel(
     gpu: &Gpu,
     shader: &str,
     features: &[&str],
-    parameters: &str,
-    entries: &[Bind<'_>],
-) -> Result<Kernel, RenderError> {
-    let shader = crate::shaders::link(shader, features, &[("parameters", parameters)])?;
-    Ok(Kernel::new(gpu, &shader, entries))
+    named: &[(&str, Bind<'_>)],
+) -> Result<Kernel, ShaderError> {
+    let parameters = parameters();
+    let extra = [("parameters", parameters.as_str())];
+    Kernel::link(gpu, shader, features, &extra, named)
 }
 
 #[derive(Debug)]
@@ -66,36 +59,26 @@ impl LongRuns {
     /// Bytes of a fragment: its place in two orders, and its part of a window.
     pub const BYTES: f64 = 4.0 + 4.0 + 8.0 / WINDOW as f64;
 
-    /// For runs of at most `most` fragments in `storage`.
+    /// For runs of at most `most` fragments in storage of so many `fragments`; `named` is what the S-buffer's kernels bind.
     pub(crate) fn new(
         gpu: &Gpu,
-        tile: &wgpu::Buffer,
-        offsets: &wgpu::Buffer,
-        storage: &FragmentStorage,
-        faults: &wgpu::Buffer,
+        named: &[(&str, Bind<'_>)],
+        fragments: u64,
         most: u32,
     ) -> Result<Self, RenderError> {
-        let fragments = storage.capacity;
         let windows = fragments.div_ceil(WINDOW.into());
         let order = gpu.storage("fragment order", fragments * 4)?;
         let other = gpu.storage("other fragment order", fragments * 4)?;
         let touched = gpu.storage("long runs", windows * 8)?;
         let step = gpu.upload("merge step", &[0u32; 4], wgpu::BufferUsages::UNIFORM);
-        let common = [
-            Bind::Uniform(tile),
-            Bind::Read(offsets),
-            Bind::Read(&storage.depths),
-            Bind::Read(&storage.triangles),
-            Bind::Write(&touched),
-        ];
-        let kernel = |shader, own: &[Bind<'_>]| {
-            let entries = [common.as_slice(), own].concat();
-            kernel(gpu, shader, &[], &parameters(), &entries)
+        let common = [("windows", &touched), ("step", &step)];
+        let kernel = |shader, own: &[(&'static str, &wgpu::Buffer)]| {
+            let own = common.iter().chain(own);
+            let own = own.map(|&(name, buffer)| (name, Bind::Buffer(buffer)));
+            let named: Vec<_> = named.iter().copied().chain(own).collect();
+            kernel(gpu, shader, &[], &named)
         };
-        let merge = |from: &wgpu::Buffer, to: &wgpu::Buffer| {
-            let own = [Bind::Uniform(&step), Bind::Read(from), Bind::Write(to)];
-            kernel("peel::long_merge", &own)
-        };
+        let merge = |from, to| kernel("peel::long_merge", &[("sorted", from), ("merged", to)]);
         let doublings = most.div_ceil(WINDOW).max(1).next_power_of_two().ilog2();
         let first = if doublings.is_multiple_of(2) {
             &order
@@ -106,12 +89,9 @@ impl LongRuns {
             doublings,
             windows: windows as u32,
             find: kernel("peel::long_windows", &[])?,
-            sort: kernel("peel::long_chunks", &[Bind::Write(first)])?,
+            sort: kernel("peel::long_chunks", &[("order", first)])?,
             merge: [merge(&other, &order)?, merge(&order, &other)?],
-            check: kernel(
-                "peel::check_long",
-                &[Bind::Read(&order), Bind::Write(faults)],
-            )?,
+            check: kernel("peel::check_long", &[("order", &order)])?,
             order,
             step,
         })
@@ -152,10 +132,9 @@ impl Fold {
     ) -> Result<Self, RenderError> {
         let step = gpu.upload("piece", &[0u32; 4], wgpu::BufferUsages::UNIFORM);
         let entries = [entries, &[("step", Bind::Uniform(&step))]].concat();
-        let shader = crate::shaders::link("peel::fold", features, &[("parameters", parameters)])?;
-        let entries = numbered(&shader, 0, &entries)?;
+        let extra = [("parameters", parameters)];
         Ok(Self {
-            kernel: Kernel::new(gpu, &shader, &entries),
+            kernel: Kernel::link(gpu, "peel::fold", features, &extra, &entries)?,
             pieces: most.div_ceil(PIECE),
             step,
         })

@@ -74,12 +74,9 @@ impl MapSets {
             let map = map.filter(|_| read.contains(flag));
             views.push(map.map(|map| self.image(gpu, map, srgb)).transpose()?);
         }
-        let mut entries = vec![Bind::Sampler(&sampler)];
-        entries.extend(
-            views
-                .iter()
-                .map(|v| v.as_ref().map_or(Bind::None, Bind::Image)),
-        );
+        let mut entries = vec![(0, Bind::Sampler(&sampler))];
+        let views = views.iter().zip(1..);
+        entries.extend(views.filter_map(|(v, number)| Some((number, Bind::Image(v.as_ref()?)))));
         let bound = gpu.bind("maps", wgpu::ShaderStages::FRAGMENT, &entries);
         self.sets.push(Set {
             maps: maps.clone(),

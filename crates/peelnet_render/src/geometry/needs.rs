@@ -1,30 +1,28 @@
 //! What a geometry pass reads of a surface, and the shader features that follow from it: a pass without colour fetches no normals, UVs or
 //! textures. What passes say is compared with naga's reflection of their shaders in a test.
 
-use crate::shaders::{ShaderError, link, naga};
-use std::{cell::RefCell, collections::BTreeSet, ops::BitOr};
+use crate::geometry::GeometryPass;
+use crate::shaders::{self, ShaderError, naga};
+use std::{cell::RefCell, collections::BTreeSet};
 
-/// What a pass reads of a surface besides where it is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct Needs(u8);
+bitflags::bitflags! {
+    /// What a pass reads of a surface besides where it is.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+    pub struct Needs: u8 {
+        /// Nothing: its position and depth alone.
+        const DEPTH = 0;
+        /// The number of its triangle.
+        const TRIANGLE = 1;
+        /// The number of its material.
+        const MATERIAL = 1 << 1;
+        /// How much it covers.
+        const OPACITY = 1 << 2 | 1 << 1;
+        /// Its radiance.
+        const COLOR = 1 << 3 | 1 << 2 | 1 << 1;
+    }
+}
 
 impl Needs {
-    /// Nothing: its position and depth alone.
-    pub const DEPTH: Self = Self(0);
-    /// The number of its triangle.
-    pub const TRIANGLE: Self = Self(1);
-    /// The number of its material.
-    pub const MATERIAL: Self = Self(1 << 1);
-    /// How much it covers.
-    pub const OPACITY: Self = Self(1 << 2 | 1 << 1);
-    /// Its radiance.
-    pub const COLOR: Self = Self(1 << 3 | 1 << 2 | 1 << 1);
-
-    /// Whether all of `other` is in it.
-    pub const fn has(self, other: Self) -> bool {
-        self.0 & other.0 == other.0
-    }
-
     /// The features of a pass's shader for a material that needs these.
     pub(crate) fn features(self, material: &[&'static str]) -> Vec<&'static str> {
         // Holes are where opacity is low.
@@ -37,130 +35,99 @@ impl Needs {
             || material.contains(&"transmission") && material.contains(&"color_map");
         let serves = |feature: &&str| match *feature {
             "cutout" | "clear_map" | "vertex_colors" | "emission" | "transmission" => {
-                needs.has(Self::OPACITY)
+                needs.contains(Self::OPACITY)
             }
-            "mapped" | "color_map" => needs.has(Self::COLOR) || mapped && needs.has(Self::OPACITY),
-            _ => needs.has(Self::COLOR),
+            "mapped" | "color_map" => {
+                needs.contains(Self::COLOR) || mapped && needs.contains(Self::OPACITY)
+            }
+            _ => needs.contains(Self::COLOR),
         };
         let of_material = material.iter().copied().filter(serves);
-        let numbered = needs.has(Self::TRIANGLE).then_some("numbered");
-        let named = needs.has(Self::MATERIAL).then_some("material");
+        let numbered = needs.contains(Self::TRIANGLE).then_some("numbered");
+        let named = needs.contains(Self::MATERIAL).then_some("material");
         of_material.chain(numbered).chain(named).collect()
     }
 }
 
-impl BitOr for Needs {
-    type Output = Self;
-
-    fn bitor(self, other: Self) -> Self {
-        Self(self.0 | other.0)
-    }
-}
-
-/// A pass that was built: its shader, features and modules without those of materials, and what it says that it needs.
-type Built = (String, Vec<String>, Vec<(String, String)>, Needs);
-
 thread_local! {
-    static BUILT: RefCell<Option<Vec<Built>>> = const { RefCell::new(None) };
-}
-
-pub(crate) fn note(shader: &str, features: &[&str], extra: &[(&str, &str)], needs: Needs) {
-    BUILT.with_borrow_mut(|built| {
-        if let Some(built) = built {
-            let features = features.iter().map(|&f| f.to_owned()).collect();
-            let owned = |&(path, text): &(&str, &str)| (path.to_owned(), text.to_owned());
-            let extra = extra.iter().map(owned).collect();
-            built.push((shader.to_owned(), features, extra, needs));
-        }
-    });
+    /// While passes are compared: what is wrong with them, and how many there are.
+    static COMPARED: RefCell<Option<(BTreeSet<String>, usize)>> = const { RefCell::new(None) };
 }
 
 /// Does `work`, and compares what each geometry pass that is built meanwhile on this thread says that it needs with what naga finds that
 /// its shader reads: for tests. Returns a line for each pass that says otherwise, and the number of passes.
 #[doc(hidden)]
-pub fn compare_needs(work: impl FnOnce()) -> Result<(Vec<String>, usize), ShaderError> {
-    BUILT.set(Some(Vec::new()));
+pub fn compare_needs(work: impl FnOnce()) -> (BTreeSet<String>, usize) {
+    COMPARED.set(Some(Default::default()));
     work();
-    let built = BUILT.take().unwrap_or_default();
-    let mut faults = BTreeSet::new();
-    for (shader, features, extra, needs) in &built {
-        // With everything that a material can have: what is read then shows what the pass needs.
-        let all = ["numbered", "material", "lit", "pbr", "vertex_colors"];
-        let features: Vec<_> = features.iter().map(String::as_str).chain(all).collect();
-        let extra: Vec<_> = extra
-            .iter()
-            .map(|(p, t)| (p.as_str(), t.as_str()))
-            .collect();
-        let linked = link(shader, &features, &extra)?;
-        let (module, info) =
-            crate::shaders::validate(shader, &linked.text, crate::shaders::PORTABLE)?;
-        let reads = of_module(&module, &info);
-        for (need, member) in [
-            (Needs::TRIANGLE, "triangle"),
-            (Needs::MATERIAL, "material"),
-            (Needs::OPACITY, "color"),
-            (Needs::COLOR, "world"),
-        ] {
-            if needs.has(need) != reads.contains(member) {
-                let says = if needs.has(need) {
-                    "says"
-                } else {
-                    "does not say"
-                };
-                faults.insert(format!("{shader} {says} that it reads {member}"));
+    COMPARED.take().unwrap_or_default()
+}
+
+/// Compares a pass, where passes are compared.
+pub(crate) fn compare(pass: &GeometryPass<'_>) -> Result<(), ShaderError> {
+    if COMPARED.with_borrow(Option::is_none) {
+        return Ok(());
+    }
+    // With everything that a material can have: what is read then shows what the pass needs.
+    let all = ["numbered", "material", "lit", "pbr", "vertex_colors"];
+    let linked = shaders::link(pass.shader, &[pass.features, &all].concat(), pass.extra)?;
+    let (module, info) = shaders::validate(pass.shader, &linked.text, shaders::PORTABLE)?;
+    let reads = of_module(&module, &info);
+    let members = [
+        (Needs::TRIANGLE, "triangle"),
+        (Needs::MATERIAL, "material"),
+        (Needs::OPACITY, "color"),
+        (Needs::COLOR, "world"),
+    ];
+    let differ = members.map(|(need, member)| {
+        let says = match (pass.needs.contains(need), reads.contains(member)) {
+            (true, false) => "says",
+            (false, true) => "does not say",
+            _ => return None,
+        };
+        Some(format!("{} {says} that it reads {member}", pass.shader))
+    });
+    COMPARED.with_borrow_mut(|compared| {
+        if let Some((faults, passes)) = compared {
+            faults.extend(differ.into_iter().flatten());
+            *passes += 1;
+        }
+    });
+    Ok(())
+}
+
+/// The members of `Surface` that a module's functions read. The linker leaves out what is not called.
+fn of_module(module: &naga::Module, info: &naga::valid::ModuleInfo) -> BTreeSet<String> {
+    let entries = (module.entry_points.iter().enumerate())
+        .map(|(number, entry)| (&entry.function, info.get_entry_point(number)));
+    let others = module.functions.iter();
+    let others = others.map(|(handle, function)| (function, &info[handle]));
+    let mut members = BTreeSet::new();
+    for (function, info) in entries.chain(others) {
+        for (_, expression) in function.expressions.iter() {
+            let naga::Expression::AccessIndex { base, index } = *expression else {
+                continue;
+            };
+            let accessed = match info[base].ty.inner_with(&module.types) {
+                naga::TypeInner::Pointer { base, .. } => &module.types[*base],
+                _ => match info[base].ty.handle() {
+                    Some(handle) => &module.types[handle],
+                    None => continue,
+                },
+            };
+            // The linker puts the module's path before the name.
+            let is_surface = accessed
+                .name
+                .as_ref()
+                .is_some_and(|n| n.ends_with("Surface"));
+            if let (true, naga::TypeInner::Struct { members: all, .. }) =
+                (is_surface, &accessed.inner)
+            {
+                members.extend(all[index as usize].name.clone());
             }
         }
     }
-    Ok((faults.into_iter().collect(), built.len()))
-}
-
-/// The members of `Surface` that a module's fragment entry point reads.
-fn of_module(module: &naga::Module, info: &naga::valid::ModuleInfo) -> BTreeSet<String> {
-    let mut reads = BTreeSet::new();
-    for (number, entry) in module.entry_points.iter().enumerate() {
-        if entry.stage != naga::ShaderStage::Fragment {
-            continue;
-        }
-        let own = info.get_entry_point(number);
-        // The linker may have renamed it, but it is what the entry point is given.
-        let given = entry.function.arguments.iter().map(|a| a.ty);
-        let is_struct = |ty| matches!(module.types[ty].inner, naga::TypeInner::Struct { .. });
-        let Some(surface) = given.into_iter().find(|&ty| is_struct(ty)) else {
-            continue;
-        };
-        members_read(module, own, &entry.function, surface, &mut reads);
-        // The linker leaves out what is not called.
-        for (handle, function) in module.functions.iter() {
-            members_read(module, &info[handle], function, surface, &mut reads);
-        }
-    }
-    reads
-}
-
-/// Adds the members of the struct `surface` that a function's expressions access.
-fn members_read(
-    module: &naga::Module,
-    info: &naga::valid::FunctionInfo,
-    function: &naga::Function,
-    surface: naga::Handle<naga::Type>,
-    members: &mut BTreeSet<String>,
-) {
-    for (_, expression) in function.expressions.iter() {
-        let naga::Expression::AccessIndex { base, index } = *expression else {
-            continue;
-        };
-        let types = &module.types;
-        let handle = match (&info[base].ty, info[base].ty.inner_with(types)) {
-            (_, naga::TypeInner::Pointer { base, .. }) => *base,
-            (naga::proc::TypeResolution::Handle(handle), _) => *handle,
-            _ => continue,
-        };
-        if let (true, naga::TypeInner::Struct { members: all, .. }) =
-            (handle == surface, &types[handle].inner)
-        {
-            members.extend(all.get(index as usize).and_then(|m| m.name.clone()));
-        }
-    }
+    members
 }
 
 #[cfg(test)]

@@ -19,21 +19,15 @@ pub struct GeometryPipelines {
     pub(crate) opaque: bool,
     /// Bind group 1.
     pub(crate) group: Option<Bound>,
-    variants: Vec<OfVariant>,
+    pub(crate) variants: Vec<OfVariant>,
 }
 
 #[derive(Debug)]
 pub(crate) struct OfVariant {
-    variant: MaterialFlags,
+    pub(crate) variant: MaterialFlags,
     pub(crate) pipeline: wgpu::RenderPipeline,
     /// Whether it reads the number of a fragment's triangle.
     pub(crate) numbered: bool,
-}
-
-impl GeometryPipelines {
-    pub(crate) fn find(&self, variant: MaterialFlags) -> Option<&OfVariant> {
-        self.variants.iter().find(|p| p.variant == variant)
-    }
 }
 
 #[derive(Debug)]
@@ -89,8 +83,8 @@ impl SceneBuffers {
         pass: &GeometryPass<'_>,
     ) -> Result<GeometryPipelines, RenderError> {
         let (scene_group, runs) = self.half(frame, pass.opaque);
-        let mut own_group: Option<Option<Bound>> = None;
-        needs::note(pass.shader, pass.features, pass.extra, pass.needs);
+        let mut own_group = None;
+        needs::compare(pass)?;
         let mut variants: Vec<(MaterialFlags, Option<usize>)> = Vec::new();
         for run in runs {
             if !variants.iter().any(|(v, _)| *v == run.variant) {
@@ -108,13 +102,12 @@ impl SceneBuffers {
             features.extend(compared);
             let fragment = crate::shaders::link(pass.shader, &features, pass.extra)?;
             // The same of all variants: what a pass reads besides surfaces is its own.
-            let own_group = match &own_group {
-                Some(known) => known.as_ref(),
-                None => own_group.insert(pass.bind(&self.gpu, &fragment)?).as_ref(),
-            };
+            if own_group.is_none() {
+                own_group = pass.bind(&self.gpu, &fragment)?;
+            }
             let maps = maps.filter(|_| features.contains(&"mapped"));
             let maps = maps.map(|number| self.maps.bound(number));
-            let mut groups = vec![Some(scene_group), own_group, maps];
+            let mut groups = vec![Some(scene_group), own_group.as_ref(), maps];
             while groups.last().is_some_and(Option::is_none) {
                 groups.pop();
             }
@@ -133,7 +126,7 @@ impl SceneBuffers {
         }
         Ok(GeometryPipelines {
             opaque: pass.opaque,
-            group: own_group.flatten(),
+            group: own_group,
             variants: all,
         })
     }

@@ -8,7 +8,8 @@ use crate::geometry::{
     count::{CountPass, FragmentCount},
     error::over_budget,
     fragments::{FragmentStorage, Tile, color_bytes, tiles},
-    long_runs::{self, LongRuns, MAX_RUN, SHORT, kernel},
+    frame::unwritten_attachment,
+    long_runs::{LongRuns, MAX_RUN, SHORT, kernel},
 };
 use crate::gpu::{GpuError, Kernel, bind::Bind, record::Recorder, wgpu};
 use bytemuck::Zeroable;
@@ -48,10 +49,8 @@ impl SBuffer {
     ) -> Result<Self, RenderError> {
         let (gpu, tinted) = (&scene.gpu, features.contains(&"tinted"));
         let limits = &gpu.limits;
-        let binding = limits
-            .max_storage_buffer_binding_size
-            .min(limits.max_buffer_size)
-            / color_bytes(tinted);
+        let largest = limits.max_storage_buffer_binding_size;
+        let binding = largest.min(limits.max_buffer_size) / color_bytes(tinted);
         Ok(Self {
             count: CountPass::new(scene, frame, features)?,
             tile: gpu.upload("tile", &[Tile::zeroed()], wgpu::BufferUsages::UNIFORM),
@@ -65,6 +64,20 @@ impl SBuffer {
     /// Fragment storage, once [`Self::plan`] has made it.
     pub fn storage(&self) -> Option<&FragmentStorage> {
         self.store.as_ref().map(|k| &k.storage)
+    }
+
+    /// What the names of kernels over a tile's fragments stand for.
+    pub fn named<'a>(&'a self, storage: &'a FragmentStorage) -> [(&'static str, Bind<'a>); 7] {
+        [
+            ("tile", &self.tile),
+            ("counts", &self.count.counts),
+            ("offsets", &self.count.offsets),
+            ("faults", &self.count.faults),
+            ("depths", &storage.depths),
+            ("triangles", &storage.triangles),
+            ("colors", &storage.colors),
+        ]
+        .map(|(name, buffer)| (name, Bind::Buffer(buffer)))
     }
 
     /// How long runs are sorted, once [`Self::plan`] has made room for them.
@@ -141,23 +154,6 @@ impl SBuffer {
         }
     }
 
-    /// The same, reading offsets back where they are needed.
-    #[cfg(not(target_arch = "wasm32"))]
-    pub fn plan_counted(
-        &mut self,
-        scene: &SceneBuffers,
-        frame: &FrameTargets,
-        needed: FragmentCount,
-    ) -> Result<(Vec<Tile>, bool), RenderError> {
-        if let Some(planned) = self.plan(scene, frame, needed, None)? {
-            return Ok(planned);
-        }
-        let bytes = u64::from(frame.pixels()) * 4 + 4;
-        let offsets: Vec<u32> = scene.gpu.read(&self.count.offsets, 0..bytes)?;
-        let planned = self.plan(scene, frame, needed, Some(&offsets))?;
-        Ok(planned.unwrap_or_default())
-    }
-
     fn kernels(
         &self,
         scene: &SceneBuffers,
@@ -167,15 +163,7 @@ impl SBuffer {
     ) -> Result<Kernels, RenderError> {
         let gpu = &scene.gpu;
         let storage = FragmentStorage::new(gpu, fragments, self.tinted)?;
-        let (offsets, faults) = (&self.count.offsets, &self.count.faults);
-        let stored = [
-            ("counts", Bind::Write(&self.count.counts)),
-            ("offsets", Bind::Read(offsets)),
-            ("depths", Bind::Write(&storage.depths)),
-            ("triangles", Bind::Write(&storage.triangles)),
-            ("colors", Bind::Write(&storage.colors)),
-            ("tile", Bind::Uniform(&self.tile)),
-        ];
+        let mut named = self.named(&storage).to_vec();
         // Which surfaces there are takes their materials' numbers alone.
         let needs = match self.features.contains(&"named") {
             true => Needs::MATERIAL,
@@ -186,35 +174,20 @@ impl SBuffer {
             shader: "peel::store",
             needs: needs | Needs::TRIANGLE,
             features: &self.features,
-            entries: &stored,
+            entries: &named,
             ..GeometryPass::NONE
         };
         let store = scene.pipelines(frame, &pass)?;
         let long = (most > SHORT)
-            .then(|| LongRuns::new(gpu, &self.tile, offsets, &storage, faults, most))
+            .then(|| LongRuns::new(gpu, &named, fragments, most))
             .transpose()?;
-        let mut sorted = vec![
-            Bind::Uniform(&self.tile),
-            Bind::Read(offsets),
-            Bind::Write(&storage.depths),
-            Bind::Write(&storage.triangles),
-            Bind::Write(&storage.colors),
-            Bind::Read(&self.count.counts),
-            Bind::Write(faults),
-        ];
         let mut features = Vec::from_iter(self.tinted.then_some("tinted"));
         if let Some(long) = &long {
-            sorted.push(Bind::Write(&long.order));
+            named.push(("order", Bind::Buffer(&long.order)));
             features.push("long");
         }
         Ok(Kernels {
-            sort: kernel(
-                gpu,
-                "peel::sort",
-                &features,
-                &long_runs::parameters(),
-                &sorted,
-            )?,
+            sort: kernel(gpu, "peel::sort", &features, &named)?,
             long,
             most,
             storage,
@@ -235,7 +208,11 @@ impl SBuffer {
         };
         recorder.write(&self.tile, &[*tile]);
         {
-            let mut pass = recorder.render("store", &[self.count.attachment()], None);
+            let mut pass = recorder.render(
+                "store",
+                &[unwritten_attachment(&self.count.attachment)],
+                None,
+            );
             let [x, y, w, h] = tile.scissor(frame.size[0]);
             pass.set_scissor_rect(x, y, w, h);
             scene.draw(&mut pass, frame, &kernels.store);

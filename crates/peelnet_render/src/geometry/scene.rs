@@ -1,8 +1,8 @@
 //! A scene's buffers, drawn from every view by every method, and edited in place.
 
 use crate::geometry::{
-    FrameTargets, GeometryPass, GeometryPipelines, PixelSample, RenderError, SamplePoint,
-    frame::{OpaqueDepth, attachment, clear_color, depth_attachment, depth_state},
+    FrameTargets, GeometryPipelines, PixelSample, RenderError, SamplePoint,
+    frame::{OpaqueDepth, attachment, clear_color, depth_attachment},
     maps::MapSets,
     uniforms::{CameraUniform, MaterialData, unit_from_depth},
     upload::{ATTRIBUTES, DrawRun, Placement, Vertex, extend, floats, push_run},
@@ -16,6 +16,7 @@ use crate::gpu::{
 use bytemuck::Zeroable;
 use peelnet_core::absorbance::DepthWarp;
 use peelnet_scene::{Camera, EFFECTS, MaterialFlags, Scene};
+use std::collections::BTreeSet;
 
 /// The order in which the transparent parts of objects are submitted to the GPU. Depths, numbers of triangles and everything that is
 /// computed of them stay as they are: only what depends on the order of drawing may change.
@@ -239,15 +240,14 @@ impl SceneBuffers {
     /// Bind group 0 of opaque passes and of transparent ones.
     pub(crate) fn groups(&self, depth: Option<&OpaqueDepth>) -> [Bound; 2] {
         let stages = wgpu::ShaderStages::VERTEX_FRAGMENT;
-        // Where nothing is lit no light is bound.
-        let lights = self.lights.as_ref().map_or(Bind::None, Bind::Read);
         let mut entries = vec![
-            Bind::Uniform(&self.camera),
-            Bind::Read(&self.materials),
-            lights,
+            (0, Bind::Uniform(&self.camera)),
+            (1, Bind::Read(&self.materials)),
         ];
+        // Where nothing is lit no light is bound.
+        entries.extend(self.lights.as_ref().map(|lights| (2, Bind::Read(lights))));
         let opaque = self.gpu.bind("opaque scene", stages, &entries);
-        entries.extend(depth.map(|depth| Bind::Texture(&depth.view)));
+        entries.extend(depth.map(|depth| (3, Bind::Texture(&depth.view))));
         [opaque, self.gpu.bind("scene", stages, &entries)]
     }
 
@@ -378,7 +378,8 @@ impl SceneBuffers {
         }
         for run in runs {
             // There is one for every run's variant.
-            let Some(found) = pipelines.find(run.variant) else {
+            let mut variants = pipelines.variants.iter();
+            let Some(found) = variants.find(|p| p.variant == run.variant) else {
                 continue;
             };
             pass.set_pipeline(&found.pipeline);
@@ -434,28 +435,6 @@ impl SceneBuffers {
             self.draw(&mut pass, frame, pipelines);
         }
     }
-
-    /// The opaque pass's pipelines, where the scene has anything opaque.
-    pub(crate) fn opaque_pipelines(
-        &self,
-        frame: &FrameTargets,
-    ) -> Result<Option<GeometryPipelines>, RenderError> {
-        let Some(depth) = frame.depth.as_ref().filter(|_| self.has_opaque()) else {
-            return Ok(None);
-        };
-        let format = depth.view.texture().format();
-        let (color, samples) = frame.output.opaque();
-        let pass = GeometryPass {
-            label: "opaque",
-            shader: "scene::opaque",
-            opaque: true,
-            targets: &[Some(color.into())],
-            depth: Some(depth_state(format)),
-            samples,
-            ..GeometryPass::NONE
-        };
-        self.pipelines(frame, &pass).map(Some)
-    }
 }
 
 fn clip_from_world(camera: &Camera, frame: &FrameTargets, point: SamplePoint) -> glam::Mat4 {
@@ -478,23 +457,20 @@ impl PartBuffers {
 /// colour (`blended`), a text for each variant.
 pub fn shader_bytes(scene: &Scene) -> Result<usize, RenderError> {
     let lights = scene.light_flags();
-    let mut texts: Vec<String> = Vec::new();
+    let mut texts = BTreeSet::new();
     for object in &scene.objects {
         for (part, material) in object.mesh.parts.iter().zip(&object.materials) {
             if part.triangles.is_empty() {
                 continue;
             }
             let features = MaterialFlags::new(material, object, lights).features();
-            let pass = if material.is_opaque() {
-                "scene::opaque"
-            } else {
-                "methods::blended::gather"
+            let pass = match material.is_opaque() {
+                true => "scene::opaque",
+                false => "methods::blended::gather",
             };
             for shader in ["scene::vertex", pass] {
                 let shader = crate::shaders::link(shader, &features, &[])?;
-                if !texts.contains(&shader.text) {
-                    texts.push(shader.text.clone());
-                }
+                texts.insert(shader.text.clone());
             }
         }
     }

@@ -38,12 +38,8 @@ impl Sorted {
                 let what = format!("the order of {triangles} triangles");
                 let hint = "sort objects instead (painter-object)";
                 gpu.check_limit(what, size, gpu.limits.max_buffer_size, "bytes", hint)?;
-                Some(gpu.device.create_buffer(&wgpu::BufferDescriptor {
-                    label: Some("sorted triangles"),
-                    size,
-                    usage: wgpu::BufferUsages::INDEX | wgpu::BufferUsages::COPY_DST,
-                    mapped_at_creation: false,
-                }))
+                let usage = wgpu::BufferUsages::INDEX | wgpu::BufferUsages::COPY_DST;
+                Some(gpu.buffer("sorted triangles", size, usage))
             }
         };
         let runs = Vec::new();

@@ -3,7 +3,7 @@
 use crate::gpu::{Gpu, cache::Layout};
 use crate::shaders::{Shader, ShaderError};
 
-/// One resource; its place in the list is its binding number.
+/// One resource.
 #[derive(Clone, Copy, Debug)]
 pub enum Bind<'a> {
     /// A uniform buffer.
@@ -18,8 +18,8 @@ pub enum Bind<'a> {
     Image(&'a wgpu::TextureView),
     /// A sampler.
     Sampler(&'a wgpu::Sampler),
-    /// Nothing: this shader has no such binding.
-    None,
+    /// A buffer that is bound as the shader declares it, see [`numbered`].
+    Buffer(&'a wgpu::Buffer),
 }
 
 /// A layout with one group that fits it.
@@ -33,7 +33,7 @@ pub struct Bound {
     pub entries: Layout,
 }
 
-/// Named resources in the order of a linked shader's binding numbers in a group. Those that the shader does not read are left out.
+/// The resources of a group that a linked shader declares, with their numbers, of the named ones. Others are left out.
 ///
 /// # Errors
 /// A variable of the shader for which nothing is given.
@@ -41,32 +41,41 @@ pub fn numbered<'a>(
     shader: &Shader,
     group: u32,
     named: &[(&str, Bind<'a>)],
-) -> Result<Vec<Bind<'a>>, ShaderError> {
-    let mut all = Vec::new();
-    for (_, number, variable) in shader.bindings.iter().filter(|b| b.0 == group) {
-        let Some((_, bind)) = named.iter().find(|(name, _)| name == variable) else {
+) -> Result<Vec<(u32, Bind<'a>)>, ShaderError> {
+    let declared = shader.bindings.iter().filter(|b| b.group == group);
+    let given = declared.map(|declared| {
+        let found = named.iter().find(|(name, _)| *name == declared.name);
+        let Some((_, bind)) = found else {
             let names: Vec<_> = named.iter().map(|(name, _)| *name).collect();
             return Err(ShaderError::new(format!(
-                "shader {} reads '{variable}', and its pass gives it [{}]",
+                "shader {} reads '{}', and its pass gives it [{}]",
                 shader.name,
+                declared.name,
                 names.join(", ")
             )));
         };
-        let number = *number as usize;
-        all.resize(all.len().max(number + 1), Bind::None);
-        all[number] = *bind;
-    }
-    Ok(all)
+        let bind = match *bind {
+            Bind::Buffer(buffer) if declared.space.contains("uniform") => Bind::Uniform(buffer),
+            Bind::Buffer(buffer) if declared.space.contains("write") => Bind::Write(buffer),
+            Bind::Buffer(buffer) => Bind::Read(buffer),
+            bind => bind,
+        };
+        Ok((declared.number, bind))
+    });
+    given.collect()
 }
 
 impl Gpu {
-    /// Builds a bind group whose entries are visible to the stages given.
-    pub fn bind(&self, label: &str, stages: wgpu::ShaderStages, entries: &[Bind<'_>]) -> Bound {
-        let layout_entries: Vec<_> = entries
-            .iter()
-            .zip(0..)
-            .filter_map(|(bind, binding)| Some((bind, binding, bind.kind()?)))
-            .map(|(bind, binding, ty)| wgpu::BindGroupLayoutEntry {
+    /// Builds a bind group whose entries, behind their numbers, are visible to the stages given.
+    pub fn bind(
+        &self,
+        label: &str,
+        stages: wgpu::ShaderStages,
+        entries: &[(u32, Bind<'_>)],
+    ) -> Bound {
+        let entries = entries.iter().map(|&(binding, bind)| {
+            let (ty, resource) = bind.described();
+            let entry = wgpu::BindGroupLayoutEntry {
                 binding,
                 // Vertex shaders may not write storage in portable WebGPU.
                 visibility: match bind {
@@ -75,22 +84,16 @@ impl Gpu {
                 },
                 ty,
                 count: None,
-            })
-            .collect();
+            };
+            (entry, wgpu::BindGroupEntry { binding, resource })
+        });
+        let (layout_entries, group_entries): (Layout, Vec<_>) = entries.unzip();
         let layout = self
             .device
             .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
                 label: Some(label),
                 entries: &layout_entries,
             });
-        let group_entries: Vec<_> = entries
-            .iter()
-            .zip(0..)
-            .filter_map(|(bind, binding)| {
-                let resource = bind.resource()?;
-                Some(wgpu::BindGroupEntry { binding, resource })
-            })
-            .collect();
         let group = self.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some(label),
             layout: &layout,
@@ -104,44 +107,42 @@ impl Gpu {
     }
 }
 
-impl Bind<'_> {
-    fn kind(&self) -> Option<wgpu::BindingType> {
-        let buffer = |ty| wgpu::BindingType::Buffer {
-            ty,
-            has_dynamic_offset: false,
-            min_binding_size: None,
+impl<'a> Bind<'a> {
+    /// What it is in a layout and in a group.
+    fn described(self) -> (wgpu::BindingType, wgpu::BindingResource<'a>) {
+        let buffer = |buffer: &'a wgpu::Buffer, ty| {
+            let ty = wgpu::BindingType::Buffer {
+                ty,
+                has_dynamic_offset: false,
+                min_binding_size: None,
+            };
+            (ty, buffer.as_entire_binding())
         };
-        let texture = |view: &wgpu::TextureView, float| {
+        let texture = |view: &'a wgpu::TextureView, filterable| {
             let texture = view.texture();
-            wgpu::BindingType::Texture {
+            let ty = wgpu::BindingType::Texture {
                 sample_type: match texture.format().sample_type(None, None) {
-                    Some(wgpu::TextureSampleType::Float { .. }) | None => float,
+                    Some(wgpu::TextureSampleType::Float { .. }) | None => {
+                        wgpu::TextureSampleType::Float { filterable }
+                    }
                     Some(other) => other,
                 },
                 view_dimension: wgpu::TextureViewDimension::D2,
                 multisampled: texture.sample_count() > 1,
-            }
+            };
+            (ty, wgpu::BindingResource::TextureView(view))
         };
-        let float = |filterable| wgpu::TextureSampleType::Float { filterable };
-        let kind = match self {
-            Self::None => return None,
-            Self::Uniform(_) => buffer(wgpu::BufferBindingType::Uniform),
-            Self::Read(_) => buffer(wgpu::BufferBindingType::Storage { read_only: true }),
-            Self::Write(_) => buffer(wgpu::BufferBindingType::Storage { read_only: false }),
-            Self::Texture(view) => texture(view, float(false)),
-            Self::Image(view) => texture(view, float(true)),
-            Self::Sampler(_) => wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
-        };
-        Some(kind)
-    }
-
-    fn resource(&self) -> Option<wgpu::BindingResource<'_>> {
-        let resource = match self {
-            Self::None => return None,
-            Self::Uniform(b) | Self::Read(b) | Self::Write(b) => b.as_entire_binding(),
-            Self::Sampler(s) => wgpu::BindingResource::Sampler(s),
-            Self::Texture(v) | Self::Image(v) => wgpu::BindingResource::TextureView(v),
-        };
-        Some(resource)
+        let storage = |read_only| wgpu::BufferBindingType::Storage { read_only };
+        match self {
+            Self::Uniform(b) => buffer(b, wgpu::BufferBindingType::Uniform),
+            Self::Read(b) | Self::Buffer(b) => buffer(b, storage(true)),
+            Self::Write(b) => buffer(b, storage(false)),
+            Self::Texture(view) => texture(view, false),
+            Self::Image(view) => texture(view, true),
+            Self::Sampler(sampler) => (
+                wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
+                wgpu::BindingResource::Sampler(sampler),
+            ),
+        }
     }
 }

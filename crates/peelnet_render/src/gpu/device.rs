@@ -7,7 +7,7 @@ use crate::shaders::Shader;
 use std::{
     borrow::Cow,
     sync::{
-        Arc, Mutex,
+        Arc, Mutex, MutexGuard, PoisonError,
         atomic::{AtomicBool, Ordering},
     },
     task::Waker,
@@ -43,10 +43,8 @@ pub(crate) struct Shared {
     pub(crate) pipelines: PipelineCache,
 }
 
-pub(crate) fn locked<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
-    mutex
-        .lock()
-        .unwrap_or_else(std::sync::PoisonError::into_inner)
+pub(crate) fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 const fn extent([width, height]: [u32; 2]) -> wgpu::Extent3d {
@@ -258,23 +256,27 @@ impl Gpu {
     /// # Errors
     /// [`GpuError::TooLarge`] beyond the largest storage binding, [`GpuError::OutOfMemory`] where memory is full.
     pub fn storage(&self, label: &str, bytes: u64) -> Result<wgpu::Buffer, GpuError> {
-        let limit = self
-            .limits
+        let limits = &self.limits;
+        let limit = limits
             .max_storage_buffer_binding_size
-            .min(self.limits.max_buffer_size);
+            .min(limits.max_buffer_size);
         // A zero-size binding is an error, and an empty frame is not.
         let size = bytes.max(16).next_multiple_of(4);
         let hint = "draw a smaller frame or use an adapter with larger storage bindings";
         self.check_limit(label, size, limit, "bytes", hint)?;
-        self.allocate(label, size, || {
-            self.device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some(label),
-                size,
-                usage: wgpu::BufferUsages::STORAGE
-                    | wgpu::BufferUsages::COPY_SRC
-                    | wgpu::BufferUsages::COPY_DST,
-                mapped_at_creation: false,
-            })
+        let usage = wgpu::BufferUsages::STORAGE
+            | wgpu::BufferUsages::COPY_SRC
+            | wgpu::BufferUsages::COPY_DST;
+        self.allocate(label, size, || self.buffer(label, size, usage))
+    }
+
+    /// A buffer of so many bytes, whatever the limits.
+    pub(crate) fn buffer(&self, label: &str, size: u64, usage: wgpu::BufferUsages) -> wgpu::Buffer {
+        self.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some(label),
+            size,
+            usage,
+            mapped_at_creation: false,
         })
     }
 
@@ -286,12 +288,8 @@ impl Gpu {
         usage: wgpu::BufferUsages,
     ) -> wgpu::Buffer {
         let bytes: &[u8] = bytemuck::cast_slice(data);
-        let buffer = self.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some(label),
-            size: (bytes.len().max(16) as u64).next_multiple_of(4),
-            usage: usage | wgpu::BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        });
+        let size = (bytes.len().max(16) as u64).next_multiple_of(4);
+        let buffer = self.buffer(label, size, usage | wgpu::BufferUsages::COPY_DST);
         if !bytes.is_empty() {
             self.queue.write_buffer(&buffer, 0, bytes);
         }
@@ -321,11 +319,9 @@ impl Gpu {
             * u64::from(height)
             * u64::from(samples)
             * u64::from(format.block_copy_size(None).unwrap_or(4));
-        let copied = if samples == 1 {
-            wgpu::TextureUsages::COPY_SRC
-        } else {
-            wgpu::TextureUsages::empty()
-        };
+        let mut usage =
+            extra | wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING;
+        usage.set(wgpu::TextureUsages::COPY_SRC, samples == 1);
         let descriptor = wgpu::TextureDescriptor {
             label: Some(label),
             size: extent([width, height]),
@@ -333,10 +329,7 @@ impl Gpu {
             sample_count: samples,
             dimension: wgpu::TextureDimension::D2,
             format,
-            usage: wgpu::TextureUsages::RENDER_ATTACHMENT
-                | wgpu::TextureUsages::TEXTURE_BINDING
-                | copied
-                | extra,
+            usage,
             view_formats: &[],
         };
         let what = format!("a frame of {width}×{height} pixels");
@@ -371,6 +364,7 @@ impl Gpu {
         levels: &[([u32; 2], Cow<'_, [u8]>)],
     ) -> Result<wgpu::TextureView, GpuError> {
         let [width, height] = levels.first().map_or([1, 1], |(size, _)| *size);
+        let format = wgpu::TextureFormat::Rgba8Unorm;
         let descriptor = wgpu::TextureDescriptor {
             label: Some(label),
             size: extent([width, height]),
@@ -378,9 +372,9 @@ impl Gpu {
             sample_count: 1,
             dimension: wgpu::TextureDimension::D2,
             format: if srgb {
-                wgpu::TextureFormat::Rgba8UnormSrgb
+                format.add_srgb_suffix()
             } else {
-                wgpu::TextureFormat::Rgba8Unorm
+                format
             },
             usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
             view_formats: &[],

@@ -2,12 +2,12 @@
 
 use crate::gpu::{
     Gpu,
-    bind::{Bind, Bound},
+    bind::{Bind, Bound, numbered},
     cache::RenderKey,
-    device::locked,
+    locked,
     record::Recorder,
 };
-use crate::shaders::Shader;
+use crate::shaders::{self, Shader, ShaderError};
 
 /// A compute shader, whose entry point is `main`, with its bindings.
 #[derive(Debug)]
@@ -18,8 +18,23 @@ pub struct Kernel {
 }
 
 impl Kernel {
+    /// Links a shader of `shaders/` and gives it what its names stand for.
+    ///
+    /// # Errors
+    /// A shader that does not link, or a variable of it for which nothing is given.
+    pub fn link(
+        gpu: &Gpu,
+        shader: &str,
+        features: &[&str],
+        extra: &[(&str, &str)],
+        named: &[(&str, Bind<'_>)],
+    ) -> Result<Self, ShaderError> {
+        let shader = shaders::link(shader, features, extra)?;
+        Ok(Self::new(gpu, &shader, &numbered(&shader, 0, named)?))
+    }
+
     /// Compiles the shader where its pipeline is not known yet.
-    pub fn new(gpu: &Gpu, shader: &Shader, entries: &[Bind<'_>]) -> Self {
+    pub(crate) fn new(gpu: &Gpu, shader: &Shader, entries: &[(u32, Bind<'_>)]) -> Self {
         let label = shader.name.as_str();
         let group = gpu.bind(label, wgpu::ShaderStages::COMPUTE, entries);
         let key = (shader.id, group.entries.clone());
@@ -63,20 +78,15 @@ pub fn groups_2d(items: u32) -> [u32; 2] {
 
 /// A render pipeline that is not compiled yet, with the entry points `vertex_main` and `fragment_main`.
 #[derive(Debug)]
+#[allow(missing_docs, reason = "as those of wgpu's descriptor")]
 pub struct RenderPipeline<'a> {
-    /// Label for messages.
     pub label: &'a str,
-    /// The vertex shader.
     pub vertex: &'a Shader,
-    /// The fragment shader.
     pub fragment: &'a Shader,
     /// Bind groups of the layouts that it takes.
     pub groups: &'a [Option<&'a Bound>],
-    /// Vertex buffers.
     pub buffers: &'a [Option<wgpu::VertexBufferLayout<'a>>],
-    /// Colour targets.
     pub targets: &'a [Option<wgpu::ColorTargetState>],
-    /// Depth state.
     pub depth: Option<wgpu::DepthStencilState>,
     /// Samples a pixel of the targets.
     pub samples: u32,
@@ -88,16 +98,14 @@ impl Gpu {
     /// A render pipeline, made where there is none that equals it yet.
     pub fn render_pipeline(&self, made_of: &RenderPipeline<'_>) -> wgpu::RenderPipeline {
         let layouts = made_of.groups.iter();
-        let buffers = made_of.buffers.iter();
+        let buffers = made_of.buffers.iter().map(|b| {
+            let b = b.as_ref()?;
+            Some((b.array_stride, b.step_mode, b.attributes.to_vec()))
+        });
         let key = RenderKey {
             shaders: [made_of.vertex.id, made_of.fragment.id],
             layouts: layouts.map(|g| g.map(|g| g.entries.clone())).collect(),
-            buffers: buffers
-                .map(|b| {
-                    let b = b.as_ref()?;
-                    Some((b.array_stride, b.step_mode, b.attributes.to_vec()))
-                })
-                .collect(),
+            buffers: buffers.collect(),
             targets: made_of.targets.to_vec(),
             depth: made_of.depth.clone(),
             samples: made_of.samples,
@@ -108,11 +116,8 @@ impl Gpu {
             return known.clone();
         }
         let [vertex, fragment] = [made_of.vertex, made_of.fragment].map(|s| self.shader(s));
-        let layouts: Vec<_> = made_of
-            .groups
-            .iter()
-            .map(|g| g.map(|g| &g.layout))
-            .collect();
+        let groups = made_of.groups.iter();
+        let layouts: Vec<_> = groups.map(|g| g.map(|g| &g.layout)).collect();
         let descriptor = wgpu::RenderPipelineDescriptor {
             label: Some(made_of.label),
             layout: Some(&self.layout(&layouts)),

@@ -24,7 +24,8 @@ const CHUNK: u64 = 16 << 20;
 #[cfg(not(target_arch = "wasm32"))]
 const PATIENCE: std::time::Duration = std::time::Duration::from_secs(300);
 
-type Mapped = oneshot::Receiver<Result<(), wgpu::BufferAsyncError>>;
+const STAGING: wgpu::BufferUsages =
+    wgpu::BufferUsages::COPY_DST.union(wgpu::BufferUsages::MAP_READ);
 
 fn lost(reason: impl ToString) -> GpuError {
     GpuError::Lost(reason.to_string())
@@ -39,14 +40,14 @@ fn did_not_map() -> GpuError {
 pub struct Download {
     staging: wgpu::Buffer,
     sizes: Vec<u64>,
-    mapped: Mapped,
+    mapped: oneshot::Receiver<Result<(), wgpu::BufferAsyncError>>,
 }
 
 impl Download {
     /// Records a copy of buffers, which is mapped when the encoder's commands are submitted.
     pub fn record(gpu: &Gpu, encoder: &mut wgpu::CommandEncoder, buffers: &[wgpu::Buffer]) -> Self {
         let sizes: Vec<u64> = buffers.iter().map(wgpu::Buffer::size).collect();
-        let staging = gpu.staging(sizes.iter().sum());
+        let staging = gpu.buffer("staging", sizes.iter().sum(), STAGING);
         let mut end = 0;
         for buffer in buffers {
             encoder.copy_buffer_to_buffer(buffer, 0, &staging, end, buffer.size());
@@ -134,37 +135,15 @@ impl Gpu {
         &self,
         view: &wgpu::TextureView,
     ) -> Result<Vec<T>, GpuError> {
-        let (buffer, row) = self.copied::<T>(view);
-        let padded: Vec<T> = self.read_async(&buffer).await?;
-        let rows = padded.chunks_exact(row);
-        let rows = rows.map(|row| &row[..view.texture().width() as usize]);
-        Ok(rows.flatten().copied().collect())
-    }
-
-    /// Ends when everything submitted so far is done.
-    pub async fn submitted_async(&self) {
-        let (sender, done) = oneshot::channel();
-        self.queue.on_submitted_work_done(|| {
-            // Nobody may wait for it any more.
-            let _ = sender.send(());
-        });
-        // An error is a device that went away: what is read next says so.
-        let _ = done.await;
-    }
-
-    /// Copies a texture into a buffer of padded rows; returns it with the texels of a row.
-    fn copied<T>(&self, view: &wgpu::TextureView) -> (wgpu::Buffer, usize) {
         let texture = view.texture();
         let (format, texel) = (texture.format(), size_of::<T>() as u32);
         let is_of_texel = format.block_copy_size(None) == Some(texel);
         assert!(is_of_texel, "a texel of {format:?} has not {texel} bytes");
+        // Copies have padded rows.
         let row = (texture.width() * texel).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
-        let buffer = self.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("image read-back"),
-            size: u64::from(row) * u64::from(texture.height()),
-            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC,
-            mapped_at_creation: false,
-        });
+        let size = u64::from(row) * u64::from(texture.height());
+        let usage = wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC;
+        let buffer = self.buffer("image read-back", size, usage);
         let mut encoder = self.encoder();
         encoder.copy_texture_to_buffer(
             texture.as_image_copy(),
@@ -179,16 +158,21 @@ impl Gpu {
             texture.size(),
         );
         self.queue.submit([encoder.finish()]);
-        (buffer, (row / texel) as usize)
+        let padded: Vec<T> = self.read_async(&buffer).await?;
+        let rows = padded.chunks_exact((row / texel) as usize);
+        let rows = rows.map(|row| &row[..texture.width() as usize]);
+        Ok(rows.flatten().copied().collect())
     }
 
-    fn staging(&self, size: u64) -> wgpu::Buffer {
-        self.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("staging"),
-            size,
-            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
-            mapped_at_creation: false,
-        })
+    /// Ends when everything submitted so far is done.
+    pub async fn submitted_async(&self) {
+        let (sender, done) = oneshot::channel();
+        self.queue.on_submitted_work_done(|| {
+            // Nobody may wait for it any more.
+            let _ = sender.send(());
+        });
+        // An error is a device that went away: what is read next says so.
+        let _ = done.await;
     }
 }
 
@@ -246,7 +230,7 @@ impl Gpu {
             return self.check();
         }
         let size = total.min(CHUNK);
-        let staging = [0, 1].map(|_| self.staging(size));
+        let staging = [0, 1].map(|_| self.buffer("staging", size, STAGING));
         out.reserve((total / size_of::<T>() as u64) as usize);
         // Two chunks in flight: the device copies one while we copy the other.
         let chunks: Vec<_> = (0..total.div_ceil(size))
@@ -311,7 +295,7 @@ impl Gpu {
         let inputs = self.upload("inputs", inputs, wgpu::BufferUsages::STORAGE);
         let bytes = (answers * size_of::<O>()) as u64;
         let answers = self.storage("answers", bytes)?;
-        let entries = [Bind::Read(&inputs), Bind::Write(&answers)];
+        let entries = [(0, Bind::Read(&inputs)), (1, Bind::Write(&answers))];
         let kernel = Kernel::new(self, &crate::shaders::plain("run", wgsl), &entries);
         let mut encoder = self.encoder();
         kernel.dispatch(&mut Recorder::new(self, &mut encoder, None), threads);

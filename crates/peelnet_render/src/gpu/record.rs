@@ -59,12 +59,8 @@ impl Timer {
         let count = labels.len() as u32 * 2;
         let period = f64::from(gpu.queue.get_timestamp_period());
         let download = queries.filter(|_| count > 0).map(|queries| {
-            let resolved = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some("pass times"),
-                size: u64::from(count) * 8,
-                usage: wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC,
-                mapped_at_creation: false,
-            });
+            let usage = wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC;
+            let resolved = gpu.buffer("pass times", u64::from(count) * 8, usage);
             encoder.resolve_query_set(&queries, 0..count, &resolved, 0);
             Download::record(gpu, encoder, &[resolved])
         });

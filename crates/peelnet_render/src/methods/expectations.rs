@@ -33,6 +33,14 @@ impl Expectations {
         estimate: None,
         known_failures: &[],
     };
+
+    /// The same with failures that are known.
+    pub(crate) const fn failing(self, known_failures: &'static [KnownFailure]) -> Self {
+        Self {
+            known_failures,
+            ..self
+        }
+    }
 }
 
 /// The colour that a pixel must have; `None` without the model that a learned method needs.
@@ -239,6 +247,16 @@ impl KnownFailure {
         }
     }
 
+    /// What lies behind nearly opaque layers shows.
+    pub(crate) const fn translucent(reason: &'static str) -> Self {
+        Self::new(Property::Opaque, "alpha-near-one", reason)
+    }
+
+    /// Coincident fragments depend on the order of drawing.
+    pub(crate) const fn coincident(reason: &'static str) -> Self {
+        Self::new(Property::Order, "coplanar", reason)
+    }
+
     /// Sums of hundreds of terms in half floats.
     pub(crate) const fn swallowed(cases: &'static str) -> Self {
         let reason = "half floats: a sum of hundreds of terms swallows what is small beside it";
@@ -271,9 +289,7 @@ impl KnownFailure {
     }
 
     /// Weights that do not depend on the layers in front.
-    pub(crate) const BLIND: Self = Self::new(
-        Property::Opaque,
-        "alpha-near-one",
+    pub(crate) const BLIND: Self = Self::translucent(
         "a weight of depth alone, or of depth and sums, does not know what lies in front (McGuire & Bavoil 2013, section 5)",
     );
 }

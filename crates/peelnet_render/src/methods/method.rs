@@ -36,17 +36,13 @@ pub struct Method {
     pub curve: &'static [&'static str],
     /// What tests, stress cases and help texts expect of it.
     pub expectations: Expectations,
-    pub(super) draws: Draws,
+    /// Lists its passes.
+    pub(super) list: fn(&mut Passes<'_>),
+    pub(super) own: Option<OwnBuild>,
 }
 
-/// How a method draws.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum Draws {
-    /// By a fixed list of passes.
-    Passes(fn(&mut Passes<'_>)),
-    /// By itself.
-    Own(fn(&Build<'_>) -> Result<Box<dyn Compositor>, RenderError>),
-}
+/// Builds a method that draws by itself, not by a fixed list of passes.
+pub(super) type OwnBuild = fn(&Build<'_>) -> Result<Box<dyn Compositor>, RenderError>;
 
 /// The number at the end of a method's name.
 #[derive(Clone, Copy, Debug)]
@@ -109,19 +105,12 @@ impl Numbered {
     }
 }
 
-fn list<'a>(passes: fn(&mut Passes<'_>), on: Conditions<'a>, network: &str) -> Passes<'a> {
-    let mut p = Passes::new(on);
-    network.clone_into(&mut p.network);
-    passes(&mut p);
-    p
-}
-
 impl Method {
     /// A method with what most have in common: normalised sums in 16 bits, no parameters, one point on its curve.
     pub(super) const fn new(
         name: &'static str,
         about: &'static str,
-        passes: fn(&mut Passes<'_>),
+        list: fn(&mut Passes<'_>),
     ) -> Self {
         Self {
             name,
@@ -132,18 +121,15 @@ impl Method {
             cpu_only: None,
             curve: &[""],
             expectations: Expectations::DEFAULT,
-            draws: Draws::Passes(passes),
+            list,
+            own: None,
         }
     }
 
     /// The same for a method that draws by itself.
-    pub(super) const fn own(
-        name: &'static str,
-        about: &'static str,
-        build: fn(&Build<'_>) -> Result<Box<dyn Compositor>, RenderError>,
-    ) -> Self {
+    pub(super) const fn own(name: &'static str, about: &'static str, build: OwnBuild) -> Self {
         Self {
-            draws: Draws::Own(build),
+            own: Some(build),
             ..Self::new(name, about, |_| {})
         }
     }
@@ -157,19 +143,18 @@ impl Method {
             true => b.learned_weight()?.wgsl.as_str(),
             false => "",
         };
-        match self.draws {
-            Draws::Passes(passes) => list(passes, b.conditions(), network).build(b),
-            Draws::Own(build) => build(b),
+        match self.own {
+            Some(build) => build(b),
+            None => self.passes(b.conditions(), network).build(b),
         }
     }
 
-    /// Its passes with the text of a network; `None` for a method that draws by itself.
-    #[cfg(test)]
-    pub(crate) fn passes<'a>(&self, on: Conditions<'a>, network: &str) -> Option<Passes<'a>> {
-        match self.draws {
-            Draws::Passes(passes) => Some(list(passes, on, network)),
-            Draws::Own(_) => None,
-        }
+    /// Its passes with the text of a network; none for a method that draws by itself.
+    pub(crate) fn passes<'a>(&self, on: Conditions<'a>, network: &str) -> Passes<'a> {
+        let mut p = Passes::new(on);
+        network.clone_into(&mut p.network);
+        (self.list)(&mut p);
+        p
     }
 
     /// Whether it is exact with its default parameters.

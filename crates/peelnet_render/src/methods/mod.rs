@@ -40,9 +40,13 @@ pub use method::{Method, Numbered, role};
 pub use parameter::{Parameter, Precision, SCALE, Values};
 pub use spec::MethodSpec;
 
-/// What methods are written with.
+/// What methods and their expectations are written with.
 mod prelude {
     pub(super) use super::{
+        expectations::{
+            Expectations, Guarantees, KnownFailure, Property, half_statistics, half_sums,
+            weighted_reference,
+        },
         method::{Method, Numbered},
         parameter::{MOMENT_TARGETS, Parameter, Precision, TARGETS},
         spec::MethodSpec,
@@ -54,18 +58,6 @@ mod prelude {
             ENDS, Passes, SUMS, TRANSMITTANCE, Target,
             compositor::{Build, Compositor, DrawContext, Fit, FrameStats},
         },
-    };
-}
-
-/// What expectations are written with.
-mod expected {
-    pub(super) use super::{
-        expectations::{
-            Expectations, Guarantees, KnownFailure, Property, half_statistics, half_sums,
-            weighted_reference,
-        },
-        parameter::Precision,
-        spec::MethodSpec,
     };
 }
 

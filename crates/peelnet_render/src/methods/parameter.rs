@@ -180,19 +180,14 @@ impl Parameter {
 
     /// The number, or the default; 0 of parameters that are none.
     pub fn number(&self, spec: &MethodSpec) -> f64 {
-        let default = match self.values {
-            Values::Number { default, .. } => default,
-            _ => 0.0,
-        };
-        self.given(spec).unwrap_or(default)
+        let default = || self.default()?.parse().ok();
+        self.given(spec).or_else(default).unwrap_or_default()
     }
 
     /// The whole number, or the default; `None` where there is neither.
     pub fn count(&self, spec: &MethodSpec) -> Option<u64> {
-        match self.values {
-            Values::Whole { default, .. } => self.given(spec).or(default),
-            _ => None,
-        }
+        let default = || self.default()?.parse().ok();
+        self.given(spec).or_else(default)
     }
 
     /// The word, or the default; empty where there is neither.

@@ -26,8 +26,8 @@ impl MethodSpec {
 
     /// The precision that was asked for of all targets; `None` leaves it to the method.
     pub fn targets(&self) -> Option<Precision> {
-        let text = self.values.get("targets")?;
-        Some(if text == Precision::WORDS[0] {
+        let is_half = self.values.get("targets")? == Precision::WORDS[0];
+        Some(if is_half {
             Precision::Half
         } else {
             Precision::Full

@@ -1,6 +1,6 @@
 //! How methods that store fragments or layers keep their colours: in 16, 8 or 4 bytes, as `helpers/stored.wgsl` does.
 
-use super::{expected::*, parameter::Parameter};
+use super::prelude::*;
 use peelnet_core::fragment::Fragment;
 
 /// What a stored colour and its alpha are kept in.

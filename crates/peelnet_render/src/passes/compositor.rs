@@ -52,7 +52,7 @@ impl<'a> DrawContext<'a, '_> {
         let output = [self.output()];
         let over = self.frame.output.is_over();
         let touched = || self.scene.touched(self.camera, self.frame, self.point);
-        pass.draw_within(self.recorder, &output, over.then(touched));
+        pass.draw(self.recorder, &output, over.then(touched));
     }
 }
 

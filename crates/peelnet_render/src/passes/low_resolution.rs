@@ -91,7 +91,7 @@ impl Compositor for LowResolution {
             target: None,
             ..*cx
         })?;
-        self.upsample.draw(cx.recorder, &[output]);
+        self.upsample.draw(cx.recorder, &[output], None);
         let samples = f64::from(frame.pixels()) / f64::from(cx.frame.pixels());
         Ok(FrameStats {
             fullscreen_passes: stats.fullscreen_passes + 2,

@@ -14,11 +14,7 @@ use crate::RenderError;
 use crate::geometry::{
     Blend, BoxPass, GeometryPass, Needs, Order, Sorted, frame::unwritten_texture,
 };
-use crate::gpu::{
-    Kernel,
-    bind::{Bind, numbered},
-    wgpu,
-};
+use crate::gpu::{Kernel, bind::Bind, wgpu};
 use crate::methods::{MethodSpec, Precision};
 use compositor::{Build, Compositor, resolve};
 use peelnet_model::Recipe;
@@ -98,17 +94,8 @@ enum Resource {
         frame: u64,
         cleared: bool,
     },
-    Given(&'static str, Given),
-    /// Where the finished picture goes, blended as that is; there is no resolve then.
-    Output,
-}
-
-/// A resource that something else allocates.
-#[derive(Clone, Debug)]
-pub(crate) enum Given {
-    Texture(wgpu::TextureView),
-    Storage(wgpu::Buffer),
-    Uniform(wgpu::Buffer),
+    /// What something else allocates.
+    Given(&'static str, Allocated),
 }
 
 /// A resource of [`Passes`].
@@ -124,16 +111,6 @@ enum Draws {
     Threads(u64),
     /// Finished pixels.
     Pixels,
-}
-
-impl Draws {
-    /// The bind group of what a pass reads and of the storage that it writes; a geometry pass has the scene in group 0.
-    const fn group(self) -> u32 {
-        match self {
-            Self::Surfaces | Self::Boxes => 1,
-            Self::Threads(_) | Self::Pixels => 0,
-        }
-    }
 }
 
 /// One pass: its shader, what it reads and what it writes, targets in the order of the shader's locations. A compute shader may read the
@@ -232,13 +209,13 @@ impl<'a> Passes<'a> {
     }
 
     /// A resource that something else allocates.
-    pub fn given(&mut self, name: &'static str, given: Given) -> Handle {
+    pub fn given(&mut self, name: &'static str, given: Allocated) -> Handle {
         self.resource(Resource::Given(name, given))
     }
 
     /// Where the finished picture goes.
     pub fn output(&mut self) -> Handle {
-        self.resource(Resource::Output)
+        self.given("output", Allocated::Output)
     }
 
     /// A target, of 16 or 32 bits as the method's `targets` says.
@@ -428,7 +405,7 @@ impl<'a> Passes<'a> {
                     colors.push(Some((view.clone(), target.blend.start())));
                     states.push(Some(target.state()));
                 }
-                (Resource::Output, _) => {
+                (_, Allocated::Output) => {
                     colors.push(None);
                     states.push(Some(output.state()));
                     samples = output.samples();
@@ -441,10 +418,8 @@ impl<'a> Passes<'a> {
         }
         let work = match pass.draws {
             Draws::Threads(threads) => {
-                let shader = crate::shaders::link(shader, &features, &modules)?;
-                let threads = u32::try_from(threads).unwrap_or(u32::MAX);
-                let entries = numbered(&shader, pass.draws.group(), &entries)?;
-                Work::Threads(Kernel::new(gpu, &shader, &entries), threads)
+                let kernel = Kernel::link(gpu, shader, &features, &modules, &entries)?;
+                Work::Threads(kernel, u32::try_from(threads).unwrap_or(u32::MAX))
             }
             Draws::Pixels => {
                 let pass = resolve(gpu, b.frame, shader, &features, &modules, &entries);
@@ -478,11 +453,12 @@ impl<'a> Passes<'a> {
 }
 
 /// A resource of a frame.
-#[derive(Debug)]
-enum Allocated {
+#[derive(Clone, Debug)]
+pub(crate) enum Allocated {
     Texture(wgpu::TextureView),
     Storage(wgpu::Buffer),
     Uniform(wgpu::Buffer),
+    /// Where the finished picture goes, blended as that is; there is no resolve then.
     Output,
 }
 
@@ -500,7 +476,6 @@ impl Resource {
             Self::Target(Target { name, .. })
             | Self::Storage { name, .. }
             | Self::Given(name, _) => name,
-            Self::Output => "output",
         }
     }
 
@@ -531,10 +506,7 @@ impl Resource {
                 }
                 Allocated::Storage(buffer)
             }
-            Self::Given(_, Given::Texture(view)) => Allocated::Texture(view.clone()),
-            Self::Given(_, Given::Storage(buffer)) => Allocated::Storage(buffer.clone()),
-            Self::Given(_, Given::Uniform(buffer)) => Allocated::Uniform(buffer.clone()),
-            Self::Output => Allocated::Output,
+            Self::Given(_, given) => given.clone(),
         })
     }
 }

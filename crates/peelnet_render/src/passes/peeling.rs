@@ -80,29 +80,22 @@ impl<P: Peel + 'static> Compositor for Peeling<P> {
     fn draw(&mut self, cx: &mut DrawContext<'_, '_>) -> Result<FrameStats, RenderError> {
         let gpu = &cx.scene.gpu;
         self.counted = cx.counting || cx.only_count;
-        if self.counted {
-            let count = match &self.count {
-                Some(count) => count,
-                None => {
-                    let made = CountPass::new(cx.scene, cx.frame, &[])?;
-                    self.count.insert(made)
-                }
-            };
+        if self.counted && self.count.is_none() {
+            self.count = Some(CountPass::new(cx.scene, cx.frame, &[])?);
+        }
+        if let Some(count) = self.count.as_ref().filter(|_| self.counted) {
             count.encode(cx.recorder, cx.scene, cx.frame);
         }
         cx.recorder.encoder().clear_buffer(&self.found, 0, None);
-        self.recorded = if cx.only_count {
-            0
-        } else {
-            self.known.unwrap_or(FIRST_GUESS).min(self.most)
-        };
-        let passes = self.recorded;
-        let bytes = 4 * u64::from(passes.max(1));
-        if self.log.size() < bytes {
-            self.log = gpu.storage("found by pass", bytes)?;
-        }
+        self.recorded = 0;
         if cx.only_count {
             return Ok(FrameStats::default());
+        }
+        let passes = self.known.unwrap_or(FIRST_GUESS).min(self.most);
+        self.recorded = passes;
+        let bytes = 4 * u64::from(passes);
+        if self.log.size() < bytes {
+            self.log = gpu.storage("found by pass", bytes)?;
         }
         self.peel.begin(cx);
         for number in 0..passes {

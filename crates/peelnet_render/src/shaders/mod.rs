@@ -8,11 +8,12 @@
 pub use naga;
 pub use peelnet_shaders::SOURCES;
 
+use crate::gpu::locked;
 use std::{
     borrow::Cow,
     cell::RefCell,
     collections::{BTreeSet, HashMap},
-    sync::{Arc, Mutex, PoisonError},
+    sync::{Arc, LazyLock, Mutex},
 };
 use wesl::{EscapeMangler, Mangler as _, ModulePath, VirtualResolver, Wesl};
 
@@ -51,15 +52,10 @@ thread_local! {
 /// a shader and look whether it shows. Not to be nested.
 #[doc(hidden)]
 pub fn with_altered<T>(path: &str, text: &str, work: impl FnOnce() -> T) -> T {
-    struct Restore;
-    impl Drop for Restore {
-        fn drop(&mut self) {
-            ALTERED.set(None);
-        }
-    }
     ALTERED.set(Some((path.to_owned(), text.to_owned())));
-    let _restore = Restore;
-    work()
+    let done = work();
+    ALTERED.set(None);
+    done
 }
 
 /// A shader's number in this process: equal for equal modules, features and texts, so that it stands for the text in keys.
@@ -75,8 +71,21 @@ pub struct Shader {
     pub name: String,
     /// Plain WGSL.
     pub text: String,
-    /// Bind group, binding number and name of each resource.
-    pub bindings: Vec<(u32, u32, String)>,
+    /// The resources that it declares.
+    pub bindings: Vec<Binding>,
+}
+
+/// A resource that a shader declares.
+#[derive(Debug)]
+pub struct Binding {
+    /// The bind group.
+    pub group: u32,
+    /// The number in it.
+    pub number: u32,
+    /// The variable.
+    pub name: String,
+    /// Its address space and access, as in `<storage, read>`; empty of textures and samplers.
+    pub space: String,
 }
 
 /// All that decides a linked shader's text.
@@ -117,26 +126,25 @@ pub fn plain(name: &str, text: &str) -> Arc<Shader> {
         features: BTreeSet::new(),
         modules: vec![(String::new(), text.to_owned())],
     };
-    let text = |_: &ShaderKey| Ok((text.to_owned(), Vec::new()));
-    interned(key, text).expect("nothing is linked")
+    let linked = |_: &ShaderKey| Ok((text.to_owned(), Vec::new()));
+    interned(key, linked).expect("nothing is linked")
 }
 
-type Linked = (String, Vec<(u32, u32, String)>);
+type Linked = (String, Vec<Binding>);
 
 /// The shader of a key, linked where it is not known.
 fn interned(
     key: ShaderKey,
     link: impl FnOnce(&ShaderKey) -> Result<Linked, ShaderError>,
 ) -> Result<Arc<Shader>, ShaderError> {
-    static KNOWN: Mutex<Option<HashMap<ShaderKey, Arc<Shader>>>> = Mutex::new(None);
-    let known = || KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
-    if let Some(shader) = known().get_or_insert_default().get(&key) {
+    static KNOWN: LazyLock<Mutex<HashMap<ShaderKey, Arc<Shader>>>> =
+        LazyLock::new(Default::default);
+    if let Some(shader) = locked(&KNOWN).get(&key) {
         return Ok(shader.clone());
     }
     // Linking takes long: the lock is not held meanwhile, and the first of two equal shaders stays.
     let (text, bindings) = link(&key)?;
-    let mut known = known();
-    let known = known.get_or_insert_default();
+    let mut known = locked(&KNOWN);
     let shader = Arc::new(Shader {
         id: ShaderId(known.len() as u32),
         name: key.root.clone(),
@@ -148,11 +156,9 @@ fn interned(
 
 fn link_uncached(key: &ShaderKey) -> Result<Linked, ShaderError> {
     let mut resolver = VirtualResolver::new();
-    for (path, text) in SOURCES {
-        resolver.add_module(module_path(path)?, Cow::Borrowed(*text));
-    }
-    for (path, text) in &key.modules {
-        resolver.add_module(module_path(path)?, Cow::Borrowed(text.as_str()));
+    let modules = key.modules.iter().map(|(p, t)| (p.as_str(), t.as_str()));
+    for (path, text) in SOURCES.iter().copied().chain(modules) {
+        resolver.add_module(module_path(path)?, Cow::Borrowed(text));
     }
     let mut linker = Wesl::new_barebones().set_custom_resolver(resolver);
     let mut options = wesl::CompileOptions {
@@ -160,15 +166,14 @@ fn link_uncached(key: &ShaderKey) -> Result<Linked, ShaderError> {
         ..Default::default()
     };
     options.features.default = wesl::Feature::Disable;
-    for feature in &key.features {
-        let flags = &mut options.features.flags;
-        flags.insert(feature.clone(), wesl::Feature::Enable);
-    }
+    let on = key.features.iter().cloned();
+    let on = on.map(|feature| (feature, wesl::Feature::Enable));
+    options.features.flags.extend(on);
     linker
         .set_options(options)
         .set_mangler(wesl::ManglerKind::Escape);
-    let linked = linker.compile(&module_path(&key.root)?);
     let root = &key.root;
+    let linked = linker.compile(&module_path(root)?);
     let linked = linked.map_err(|e| ShaderError(format!("linking shader {root} failed:\n{e}")))?;
     let text = linked.to_string();
     let bindings = bindings(&text);
@@ -176,23 +181,15 @@ fn link_uncached(key: &ShaderKey) -> Result<Linked, ShaderError> {
 }
 
 /// The resources that a linked text declares, as `@group(1) @binding(0) var<storage, read> name: …`.
-fn bindings(text: &str) -> Vec<(u32, u32, String)> {
+fn bindings(text: &str) -> Vec<Binding> {
     let number = |text: &str, word: &str| -> Option<u32> {
-        text.rsplit_once(word)?
-            .1
-            .split_once(')')?
-            .0
-            .trim()
-            .parse()
-            .ok()
+        let (_, rest) = text.rsplit_once(word)?;
+        rest.split_once(')')?.0.trim().parse().ok()
     };
     let binding = |statement: &str| {
-        let (attributes, name) = statement.rsplit_once(':')?.0.rsplit_once("var")?;
-        let (group, binding) = (
-            number(attributes, "@group(")?,
-            number(attributes, "@binding(")?,
-        );
-        let name = name.rsplit(['>', ' ']).next()?;
+        let (attributes, variable) = statement.rsplit_once(':')?.0.rsplit_once("var")?;
+        let at = variable.rfind(['>', ' '])? + 1;
+        let (space, name) = variable.split_at(at);
         // Of another module than the root.
         let imported = name
             .starts_with("package_")
@@ -200,7 +197,12 @@ fn bindings(text: &str) -> Vec<(u32, u32, String)> {
         let name = imported
             .flatten()
             .map_or_else(|| name.to_owned(), |(_, item)| item);
-        Some((group, binding, name))
+        Some(Binding {
+            group: number(attributes, "@group(")?,
+            number: number(attributes, "@binding(")?,
+            name,
+            space: space.trim().to_owned(),
+        })
     };
     text.split(';').filter_map(binding).collect()
 }
@@ -259,13 +261,10 @@ mod tests {
         let imports = SOURCES.iter().flat_map(|(_, text)| text.lines());
         let names: BTreeSet<&str> = imports
             .filter_map(|line| line.trim().strip_prefix("import package::parameters::"))
-            .flat_map(|names| names.split(|c: char| !c.is_ascii_alphanumeric() && c != '_'))
-            .filter(|name| !name.is_empty())
+            .flat_map(words)
             .collect();
-        names
-            .into_iter()
-            .map(|name| format!("const {name} = 4;\n"))
-            .collect()
+        let constants = names.iter().map(|name| format!("const {name} = 4;\n"));
+        constants.collect()
     }
 
     /// Features that materials need: each effect's alone, on a lit surface where it needs that, and all of them with either
@@ -300,22 +299,21 @@ mod tests {
     /// Features that a view may bring to any pass over surfaces.
     const OF_VIEWS: [&[&str]; 4] = [&[], &["opaque"], &["sampled"], &["opaque", "sampled"]];
 
+    /// Words of a text that features, loops and parameters are found by.
+    fn words(text: &'static str) -> impl Iterator<Item = &'static str> {
+        let words = text.split(|c: char| !c.is_ascii_alphanumeric() && c != '_');
+        words.filter(|word| !word.is_empty())
+    }
+
     /// Features that a text switches on, but for those of materials and views.
     fn own_features(text: &'static str) -> BTreeSet<&'static str> {
-        let conditions = text
-            .split("@if(")
-            .skip(1)
-            .filter_map(|t| t.split(')').next());
-        let words =
-            conditions.flat_map(|c| c.split(|c: char| !c.is_ascii_alphanumeric() && c != '_'));
-        let materials: BTreeSet<&str> = of_materials().into_iter().flatten().collect();
-        let of_scenes = |f: &&str| {
-            let of_views = OF_VIEWS.into_iter().flatten();
-            ["numbered", "material"].contains(f)
-                || materials.contains(f)
-                || of_views.into_iter().any(|k| k == f)
-        };
-        words.filter(|f| !f.is_empty() && !of_scenes(f)).collect()
+        let conditions = text.split("@if(").skip(1);
+        let conditions = conditions.filter_map(|t| t.split(')').next());
+        let of_views = OF_VIEWS.into_iter().flatten().copied();
+        let of_scenes = of_materials().into_iter().flatten().chain(of_views);
+        let of_scenes: Vec<_> = of_scenes.chain(["numbered", "material"]).collect();
+        let all = conditions.flat_map(words);
+        all.filter(|f| !of_scenes.contains(f)).collect()
     }
 
     /// Every root (a module with an entry point) links and validates in every variant that its head names, with every material
@@ -339,26 +337,17 @@ mod tests {
                     ));
                 }
             }
-            let over_surfaces = text.contains("Surface");
-            let carried = if over_surfaces {
-                &["numbered", "material"][..]
-            } else {
-                &[]
+            let carried: &[&str] = match text.contains("Surface") {
+                true => &["numbered", "material"],
+                false => &[],
             };
-            let with = |set: &[&'static str], more: &[&'static str]| {
-                let all = set.iter().chain(more).copied();
-                all.chain(carried.iter().copied()).collect::<Vec<_>>()
-            };
+            let with = |set: &[&'static str], more: &[&'static str]| [set, more, carried].concat();
             let views = own
                 .iter()
                 .flat_map(|set| OF_VIEWS.map(|view| with(set, view)));
             let mut all: Vec<Vec<&str>> = views.collect();
             if text.contains("surface: Surface") || text.contains("-> Surface") {
-                all.extend(
-                    of_materials()
-                        .iter()
-                        .map(|material| with(&own[0], material)),
-                );
+                all.extend(of_materials().iter().map(|m| with(&own[0], m)));
             }
             let folder = path.rsplit_once("::").map_or("", |(folder, _)| folder);
             for features in all {
@@ -366,9 +355,9 @@ mod tests {
                     ("learned::weight", learned(folder, &features)),
                     ("parameters", parameters.as_str()),
                 ];
-                let result = link(path, &features, &extra)
-                    .and_then(|shader| validate(path, &shader.text, PORTABLE).map(drop));
-                if let Err(e) = result {
+                let linked = link(path, &features, &extra);
+                let valid = linked.and_then(|shader| validate(path, &shader.text, PORTABLE));
+                if let Err(e) = valid {
                     failures.push(format!("{path} {features:?}: {e}"));
                 }
             }
@@ -377,85 +366,20 @@ mod tests {
         assert!(failures.is_empty(), "{}", failures.join("\n"));
     }
 
-    /// Every loop of a shader, and why a scene cannot make it long: some drivers end loops of more than 65,535 iterations without an error,
-    /// and watchdogs end what takes long. What does not stand here, or stands with another number of loops, fails.
-    const LOOPS: &[(&str, usize, &str)] = &[
-        ("helpers::weights", 1, "the parameter k, at most 16"),
-        (
-            "methods::abuffer::composite",
-            1,
-            "PIECE fragments, or SHORT",
-        ),
-        (
-            "methods::avboit::integrate",
-            1,
-            "the parameter slices, at most 1,024",
-        ),
-        ("methods::kbuffer::gather", 2, "K, at most 64; ATTEMPTS"),
-        ("methods::kbuffer::insert", 1, "K, at most 64"),
-        ("methods::kbuffer::resolve", 2, "K, at most 64"),
-        ("passes::layers::composite", 1, "PIECE fragments, or SHORT"),
-        (
-            "methods::linked_list::composite",
-            5,
-            "LONGEST nodes, and log2 of that",
-        ),
-        ("passes::low_resolution::upsample", 1, "4 texels"),
-        ("methods::mboit::six::reconstruct", 1, "a constant"),
-        ("methods::mboit::eight::reconstruct", 11, "constants"),
-        (
-            "methods::mboit::trigonometric::reconstruct",
-            8,
-            "MOMENTS, at most 4",
-        ),
-        ("methods::mboit::trigonometric::roots", 1, "a constant"),
-        ("methods::stochastic::depths", 1, "SAMPLES, at most 256"),
-        ("methods::stochastic::gather", 1, "SAMPLES, at most 256"),
-        (
-            "passes::surfaces::composite",
-            1,
-            "PIECE fragments, or SHORT",
-        ),
-        ("peel::check_long", 1, "WINDOW slots"),
-        ("peel::fold", 1, "PIECE fragments"),
-        ("peel::long_chunks", 2, "WINDOW slots"),
-        (
-            "peel::long_merge",
-            2,
-            "WINDOW slots; a binary search over 22 bits",
-        ),
-        ("peel::long_windows", 1, "a binary search over 32 bits"),
-        ("peel::scan_blocks", 1, "BLOCK pixels"),
-        ("peel::scan_pixels", 1, "BLOCK pixels"),
-        (
-            "peel::scan_top",
-            3,
-            "LANES; blocks of a frame by LANES, 16,384 of 2^28 pixels",
-        ),
-        (
-            "peel::sort",
-            5,
-            "SHORT fragments, and the gaps of their sort",
-        ),
-        ("scene::shade", 2, "peelnet_scene::MAX_LIGHTS"),
-    ];
-
+    /// The head of a shader says how many loops it has, and why a scene cannot make them long, as in `// Loops: 1: at most 16 samples.`: some
+    /// drivers end loops of more than 65,535 iterations without an error, and watchdogs end what takes long.
     #[test]
     fn every_loop_has_a_bound() {
         let is_loop = |word: &&str| ["for", "while", "loop"].contains(word);
         let code = |line: &'static str| line.split("//").next().unwrap_or_default();
-        let words =
-            |line: &'static str| code(line).split(|c: char| !c.is_ascii_alphanumeric() && c != '_');
-        let of_text = |text: &'static str| text.lines().flat_map(words).filter(is_loop).count();
-        let all = SOURCES.iter().map(|(path, text)| (*path, of_text(text)));
-        let found: BTreeSet<_> = all.filter(|(_, loops)| *loops > 0).collect();
-        let listed = LOOPS
-            .iter()
-            .map(|(path, loops, _)| (*path, *loops))
-            .collect();
-        let difference: Vec<_> = found.symmetric_difference(&listed).collect();
-        assert!(difference.is_empty(), "{difference:?}");
-        assert!(LOOPS.iter().all(|(.., bound)| !bound.is_empty()));
+        for (path, text) in SOURCES {
+            let code = text.lines().map(code);
+            let found = code.flat_map(words).filter(is_loop).count();
+            let said = text.lines().find_map(|l| l.strip_prefix("// Loops: "));
+            let (loops, bound) = said.and_then(|l| l.split_once(": ")).unwrap_or_default();
+            let loops = loops.parse().unwrap_or(0);
+            assert_eq!((loops, bound.is_empty()), (found, found == 0), "{path}");
+        }
     }
 
     #[test]
@@ -471,10 +395,8 @@ mod tests {
         let opaque = link("peel::count", &["opaque"], &[]).expect("links");
         assert!(opaque.text.contains("opaque_depth"));
         let names = |shader: &Shader| -> Vec<_> {
-            let of_pass = shader.bindings.iter().filter(|b| b.0 == 1);
-            of_pass
-                .map(|(_, number, name)| (*number, name.clone()))
-                .collect()
+            let of_pass = shader.bindings.iter().filter(|b| b.group == 1);
+            of_pass.map(|b| (b.number, b.name.clone())).collect()
         };
         assert_eq!(names(&plain), [(0, "counts".to_owned())]);
         assert_eq!(names(&opaque), names(&plain));

@@ -13,7 +13,7 @@ use crate::{
     error::SceneError,
     files::{Files, MAX_MESH},
 };
-use gltf::json::extensions::ENABLED_EXTENSIONS;
+use gltf::json::{Root, extensions::ENABLED_EXTENSIONS};
 use nodes::Reader;
 use peelnet_core::files::{counted, printable};
 use serde_json::Value;
@@ -57,18 +57,18 @@ fn parse(bytes: &[u8]) -> Result<(gltf::Document, Option<Vec<u8>>), String> {
     let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
     // The crate skips unknown names without checking that they are text.
     let mut document = serde_json::from_slice::<Value>(text).map_err(|e| bad(&e))?;
+    if let Some(fields) = document.as_object_mut() {
+        fields.retain(|name, field| !(field.is_null() && name.starts_with("scene")));
+    }
     checks::check_version(&document)?;
-    checks::check_references(&document)?;
-    checks::check_kinds(&document)?;
-    repair::repair(&mut document);
-    let root = serde_json::from_value(document).map_err(|e| bad(&e))?;
-    let document = gltf::Document::from_json(root).map_err(|e| match e {
-        gltf::Error::Validation(all) if !all.is_empty() => {
-            let (at, e) = &all[0];
-            bad(&format!("{at}: {e}"))
-        }
-        e => bad(&e),
-    })?;
+    checks::check_extensions(&document)?;
+    let mut root: Root = serde_json::from_value(document)
+        // The text has lines and columns for it.
+        .map_err(|e| bad(&Root::from_slice(text).err().unwrap_or(e)))?;
+    checks::check_elements(&root)?;
+    repair::fault_of(&root).map_or(Ok(()), |e| Err(bad(&e)))?;
+    repair::repair(&mut root).map_err(|e| bad(&e))?;
+    let document = gltf::Document::from_json_without_validation(root);
     Ok((document, blob))
 }
 

@@ -111,12 +111,9 @@ fn whole(list: Property) -> Option<Vec<i64>> {
     }
     Some(match list {
         Property::ListChar(list) => all(list),
-        Property::ListUChar(list) => all(list),
         Property::ListShort(list) => all(list),
-        Property::ListUShort(list) => all(list),
         Property::ListInt(list) => all(list),
-        Property::ListUInt(list) => all(list),
-        _ => return None,
+        list => all(list.to_u32_list()?),
     })
 }
 

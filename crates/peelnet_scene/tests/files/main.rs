@@ -36,13 +36,26 @@ fn load_files(files: &[(&str, &[u8])]) -> Result<Scene, String> {
     load_at(files, None)
 }
 
-/// `words`, between ` & `, are in the error.
+/// All `words`, between ` & `, are in a text.
+fn assert_says(text: &str, words: &str) {
+    for word in words.split(" & ") {
+        assert!(text.contains(word), "no '{word}' in: {text}");
+    }
+}
+
+/// `words` are in the error.
 fn assert_refused<T>(loaded: Result<T, String>, words: &str) {
     let e = loaded.map(|_| ()).expect_err(words);
-    for word in words.split(" & ") {
-        assert!(e.contains(word), "no '{word}' in: {e}");
-    }
+    assert_says(&e, words);
     assert!(!e.contains(char::is_control), "{e:?}");
+}
+
+/// The same of each row of a table: what `load` takes, where ` ; ` ends a line, and the words.
+fn assert_all_refused<T>(table: &str, load: impl Fn(&str) -> Result<T, String>) {
+    for row in table.trim_matches('\n').lines() {
+        let (text, words) = row.rsplit_once(" => ").unwrap();
+        assert_refused(load(&text.replace(" ; ", "\n")), words);
+    }
 }
 
 /// Every vertex is inside each of three views.

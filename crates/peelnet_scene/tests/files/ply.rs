@@ -1,6 +1,6 @@
 //! PLY files as scanners' programs write them, and as they should not.
 
-use crate::{Loaded, area, assert_refused, load_mesh};
+use crate::{Loaded, area, assert_all_refused, assert_refused, assert_says, load_mesh};
 use glam::{Vec2, Vec3};
 use peelnet_scene::Mesh;
 
@@ -22,7 +22,7 @@ element face 1\nproperty list uchar int vertex_indices\n";
 
 const CORNERS: [[f32; 3]; 4] = [[0.0; 3], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
 
-fn square_text() -> String {
+pub fn square_text() -> String {
     let vertices = CORNERS.map(|[x, y, z]| format!("{x} {y} {z} 255 188 0 255\n"));
     header("ascii", SQUARE) + &vertices.concat() + "4 0 1 2 3\n"
 }
@@ -108,8 +108,7 @@ fn normals_texture_coordinates_and_polygons() {
         corners.find(|(i, _)| **i == vertex).map(|(_, uv)| *uv)
     };
     assert_eq!(uv_of(&m, 2), Some(Vec2::new(0.5, 0.0)));
-    let warnings = warnings.join("\n");
-    assert!(warnings.contains("color_map") && warnings.contains("1 normal"));
+    assert_says(&warnings.join("\n"), "color_map & 1 normal");
     let (own, ..) = with("4 0 1 2 3 8 0 0 0.25 0 0 0.75 0 0");
     assert_eq!(uv_of(&own, 1), Some(Vec2::new(0.25, 1.0)));
     assert_eq!(uv_of(&own, 2), Some(Vec2::new(0.0, 0.25)));
@@ -134,9 +133,8 @@ fn seams_and_degenerate_faces() {
     let (m, warnings, _) = load_text(&header("ascii", lines), body);
     assert_eq!(m.triangles.len(), 2);
     assert_eq!((m.normals[0], m.normals[1]), (m.normals[3], m.normals[4]));
-    let warnings = warnings.join("\n");
-    assert!(warnings.contains("1 triangle without area"), "{warnings}");
-    assert!(warnings.contains("1 face of fewer than 3"), "{warnings}");
+    let words = "1 triangle without area & 1 face of fewer than 3";
+    assert_says(&warnings.join("\n"), words);
 }
 
 /// What of the square is replaced by what, and words of the error.
@@ -166,12 +164,11 @@ end_header => end => end_header & cut off
 /// Every bad file is one error that names the file, the place and a fix, and takes no memory first.
 #[test]
 fn bad_files() {
-    for row in BAD.trim().lines() {
-        let columns: Vec<&str> = row.split(" => ").collect();
-        let text = square_text().replacen(columns[0], columns[1], 1);
-        let words = format!("a.ply & {}", columns[2]);
-        assert_refused(load(text.as_bytes()), &words);
-    }
+    assert_all_refused(BAD, |change| {
+        let (old, new) = change.split_once(" => ").unwrap();
+        let loaded = load(square_text().replacen(old, new, 1).as_bytes());
+        loaded.inspect_err(|e| assert!(e.starts_with("a.ply"), "{e}"))
+    });
 }
 
 /// Wherever a file is cut off, it is an error that says so.

@@ -1,6 +1,8 @@
 //! Scene files and mesh files as scenes, sound and bad, from files in memory.
 
-use crate::{CAMERA, assert_framed, assert_refused, image, load_at, load_files};
+use crate::{
+    CAMERA, assert_all_refused, assert_framed, assert_refused, image, load_at, load_files, ply, stl,
+};
 use glam::Vec3;
 use peelnet_scene::{Lighting, Material, Scene, SceneError};
 use std::{
@@ -107,14 +109,8 @@ lighting = 'pbr' ; specular_color_map = 'none.png' => none.png & cannot read
 fn bad_scene_files() {
     let material =
         "[[light]]\nposition = [1, 1, 1]\n[[object]]\nmesh = 'a.obj'\n[object.material]\n";
-    let cases = [("", BAD), (material, BAD_MATERIALS)];
-    for (head, table) in cases {
-        for row in table.trim().lines() {
-            let (text, words) = row.split_once(" => ").unwrap();
-            let text = format!("{head}{}", text.replace(" ; ", "\n"));
-            assert_refused(load(&text), words);
-        }
-    }
+    assert_all_refused(BAD, load);
+    assert_all_refused(BAD_MATERIALS, |text| load(&format!("{material}{text}")));
     for (good, bad, words) in [
         ("near = 0.1", "near = 200", "camera.near & below far"),
         ("near = 0.1", "near = 0", "camera.near & positive"),
@@ -425,13 +421,11 @@ fn any_size_is_framed_or_refused() {
     assert_refused(load_files(&[("a.obj", huge)]), "a.obj & scale it down");
 }
 
-/// A triangle of either format.
+/// One file of either format.
 #[test]
 fn scans_are_scenes() {
-    let ply = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty uchar red\n\
-        property uchar green\nproperty uchar blue\nproperty uchar alpha\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n\
-        0 0 0 255 0 0 128\n1 0 0 255 0 0 128\n0 1 0 255 0 0 128\n3 0 1 2\n";
-    let stl = "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid\n";
+    let ply = ply::square_text().replace(" 0 255\n", " 0 128\n");
+    let stl = stl::text(&stl::cube());
     let scene = load_files(&[("scan.PLY", ply.as_bytes())]).unwrap();
     assert_framed(&scene);
     // Its opacity is the file's.

@@ -1,6 +1,6 @@
 //! STL files as CAD programs write them, and as they should not.
 
-use crate::{CAMERA, Loaded, assert_refused, load_files, load_mesh};
+use crate::{CAMERA, Loaded, assert_all_refused, assert_refused, load_files, load_mesh};
 use glam::Vec3;
 
 fn load(bytes: &[u8]) -> Result<Loaded, String> {
@@ -8,7 +8,7 @@ fn load(bytes: &[u8]) -> Result<Loaded, String> {
 }
 
 /// The twelve triangles of a unit cube.
-fn cube() -> Vec<[Vec3; 3]> {
+pub fn cube() -> Vec<[Vec3; 3]> {
     let quads = [
         [0, 2, 3, 1],
         [4, 5, 7, 6],
@@ -35,7 +35,7 @@ fn binary(triangles: &[[Vec3; 3]], header: &[u8]) -> Vec<u8> {
     bytes
 }
 
-fn text(triangles: &[[Vec3; 3]]) -> String {
+pub fn text(triangles: &[[Vec3; 3]]) -> String {
     let vertex = |v: Vec3| format!("vertex {} {} {}\n", v.x, v.y, v.z);
     let facets = triangles.iter().map(|t| {
         let vertices = t.map(vertex).concat();
@@ -108,18 +108,16 @@ facet normal => face normal => a.stl:2 & 'face
 fn bad_files() {
     let good = text(&cube());
     assert_eq!(good.lines().nth(3), Some("vertex 0 0 0"));
-    let row = |row: &'static str| {
-        let columns: Vec<&str> = row.split(" => ").collect();
-        let [old, new] = [0, 1].map(|k| columns[k].replace(" ; ", "\n"));
-        (good.replacen(&old, &new, 1), columns[2])
-    };
-    let others = [
-        (String::new(), "0 bytes & 84 & cut off"),
-        ("solid a\nendsolid a\n".into(), "no facets"),
-        (good[..good.len() - 60].into(), "cut off"),
-    ];
-    for (text, words) in BAD.trim_matches('\n').lines().map(row).chain(others) {
-        assert_refused(load(text.as_bytes()), &format!("a.stl & {words}"));
+    assert_all_refused(BAD, |change| {
+        let (old, new) = change.split_once(" => ").unwrap();
+        load(good.replacen(old, new, 1).as_bytes())
+    });
+    for (text, words) in [
+        ("", "a.stl & 0 bytes & 84 & cut off"),
+        ("solid a\nendsolid a\n", "a.stl & no facets"),
+        (&good[..good.len() - 60], "a.stl & cut off"),
+    ] {
+        assert_refused(load(text.as_bytes()), words);
     }
 }
 

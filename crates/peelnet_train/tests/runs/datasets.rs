@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
-use peelnet_dataset::{Dataset, FragmentBatch, SceneEntry, SplitBy, Subset};
+use peelnet_dataset::{Dataset, FragmentBatch, PeeledFragment, SceneEntry, SplitBy, Subset};
 use peelnet_model::Recipe;
 use peelnet_train::{Config, DataSplit, TrainingData, held_out_errors};
 
-use super::{push_pixel, run, scene, write_views};
+use super::{run, scene, write_views};
 
 const SIDE: u32 = 30;
 
@@ -14,9 +14,11 @@ const SIDE: u32 = 30;
 fn stacks(index: u32, layers: u32) -> FragmentBatch {
     let mut batch = FragmentBatch::default();
     for (x, y) in (0..SIDE).flat_map(|y| (0..SIDE).map(move |x| (x, y))) {
-        let depths = (0..layers).map(|layer| 1.0 + layer as f32 + x as f32 / 64.0);
-        let points: Vec<_> = depths.map(|depth| (depth, 0.5)).collect();
-        push_pixel(&mut batch, [index, x, y], &points, || [0.5; 3]);
+        let fragments = (0..layers).map(|layer| PeeledFragment {
+            depth: 1.0 + layer as f32 + x as f32 / 64.0,
+            color: [0.5; 4],
+        });
+        batch.push_pixel([index, x, y], [0.1, 100.0], fragments);
     }
     batch
 }

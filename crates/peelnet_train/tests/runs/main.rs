@@ -9,9 +9,7 @@ use std::num::NonZeroUsize;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use peelnet_dataset::{
-    Dataset, DatasetWriter, Format, FragmentBatch, Header, Part, PeeledFragment, SceneEntry,
-};
+use peelnet_dataset::{Dataset, DatasetWriter, Format, FragmentBatch, Header, Part, SceneEntry};
 use peelnet_model::Model;
 use peelnet_train::{
     Config, End, Outcome, RunOptions, TrainError, TrainingData, checkpoint_folder, train,
@@ -124,16 +122,9 @@ fn write_views(
         folder,
         Header {
             format: Format::Npy,
-            seed: 1,
-            adapter: "none".to_owned(),
-            adapter_class: "none".to_owned(),
-            tool_version: "0".to_owned(),
-            command: "test".to_owned(),
-            peel: "sbuffer".to_owned(),
             pixels_fraction: 1.0,
             scenes,
             work_items: parts,
-            worker: "test".to_owned(),
             ..Header::default()
         },
     )
@@ -153,19 +144,4 @@ fn write_views(
     }
     writer.finish().unwrap();
     Dataset::open(folder).unwrap()
-}
-
-/// Appends a pixel (view, x, y) with these depths and opacities, nearest first.
-fn push_pixel(
-    batch: &mut FragmentBatch,
-    pixel: [u32; 3],
-    points: &[(f32, f32)],
-    mut color: impl FnMut() -> [f32; 3],
-) {
-    let fragment = |&(depth, alpha): &(f32, f32)| {
-        let [r, g, b] = color();
-        PeeledFragment::new(depth, [r, g, b, alpha])
-    };
-    let fragments: Vec<PeeledFragment> = points.iter().map(fragment).collect();
-    batch.push_pixel(pixel, [0.1, 100.0], fragments.into_iter());
 }

@@ -4,11 +4,11 @@ use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
 use peelnet_core::random::Random;
-use peelnet_dataset::{Dataset, FragmentBatch, SplitBy, Subset};
+use peelnet_dataset::{Dataset, FragmentBatch, PeeledFragment, SplitBy, Subset};
 use peelnet_model::Recipe;
 use peelnet_train::{Config, DataSplit, TrainError, TrainingData, train};
 
-use super::{NEVER, assert_repeats, assert_resumes, push_pixel, resuming, run, scene, write_views};
+use super::{NEVER, assert_repeats, assert_resumes, resuming, run, scene, write_views};
 
 const SIDE: u32 = 40;
 
@@ -24,8 +24,13 @@ fn view(index: u32) -> FragmentBatch {
         let alphas: Vec<f32> = (0..count)
             .map(|_| random.between(0.1, 0.3 + 0.08 * index as f32))
             .collect();
-        let points: Vec<_> = depths.into_iter().zip(alphas).collect();
-        push_pixel(&mut batch, [index, x, y], &points, || random.color());
+        let points = depths.into_iter().zip(alphas).map(|(depth, alpha)| {
+            let [r, g, b] = random.color();
+            let color = [r, g, b, alpha];
+            PeeledFragment { depth, color }
+        });
+        let fragments: Vec<_> = points.collect();
+        batch.push_pixel([index, x, y], [0.1, 100.0], fragments.into_iter());
     }
     batch
 }

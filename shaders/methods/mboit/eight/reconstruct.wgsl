@@ -1,5 +1,6 @@
 // Transmittance in front of a warped depth from eight power moments (Muenstermann et al. 2018); the steps are explained in the CPU reference,
 // peelnet_core::methods::moments::power.
+// Loops: 11: constants.
 import package::methods::mboit::trigonometric::roots::quartic;
 import package::parameters::{BIAS, OVERESTIMATION};
 

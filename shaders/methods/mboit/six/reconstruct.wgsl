@@ -1,5 +1,6 @@
 // Transmittance in front of a warped depth from six power moments (Muenstermann et al. 2018); the steps are explained in
 // the CPU reference, peelnet_core::methods::moments::power.
+// Loops: 1: a constant.
 import package::parameters::{BIAS, OVERESTIMATION};
 
 // Pivots and multipliers of the Hankel matrix of moments.

@@ -1,5 +1,6 @@
 // Transmittance in front of an angle from trigonometric moments (Muenstermann et al. 2018, supplement); the steps are explained in the
 // CPU reference, peelnet_core::methods::moments::trigonometric.
+// Loops: 8: MOMENTS, at most 4.
 import package::methods::mboit::trigonometric::circle::{WRAPPING_ZONE, conjugate, times, turn};
 import package::methods::mboit::trigonometric::roots::{cubic, quadratic};
 import package::parameters::{BIAS, MOMENTS, OVERESTIMATION};

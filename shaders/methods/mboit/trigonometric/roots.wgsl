@@ -1,4 +1,5 @@
 // Zeros of polynomials all of whose zeros are real, coefficients from the constant one up; as peelnet_core::methods::moments::roots.
+// Loops: 1: a constant.
 
 fn quadratic(c: vec3f) -> vec2f {
     let half = 0.5 * c.y;

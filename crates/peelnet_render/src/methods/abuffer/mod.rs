@@ -161,7 +161,7 @@ impl Compositor for ABuffer {
             }
             if let Some(pass) = &self.pass {
                 let within = tile.scissor(cx.frame.size[0]);
-                pass.draw_within(cx.recorder, &[output.clone()], Some(within));
+                pass.draw(cx.recorder, &[output.clone()], Some(within));
             }
             // The tiles before stay.
             if let Some(output) = &mut output {

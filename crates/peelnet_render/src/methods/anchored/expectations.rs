@@ -1,6 +1,4 @@
-//! What tests and `peelnet stress` expect of the methods in this folder.
-
-use crate::methods::{expected::*, learned::learned_transmittances};
+use crate::methods::{learned::learned_transmittances, prelude::*};
 use peelnet_core::methods::anchored;
 use peelnet_model::inputs::{ANCHORED as FEATURES, AnchoredInputs};
 
@@ -48,20 +46,15 @@ const ROUNDED_OTHERWISE: KnownFailure = KnownFailure::new(
 .when(half_sums)
 .seen_on_llvmpipe();
 
-pub(super) const SMALL: Expectations = Expectations {
-    known_failures: &[
-        KnownFailure::swallowed("deep"),
-        ROUNDED_OTHERWISE,
-        UNSETTLED,
-        KnownFailure::unsettled(Property::Order, "near-overflow deep"),
-        KnownFailure::reordered("emissive"),
-        BEHIND_COINCIDENT,
-        MAGNIFIED,
-    ],
-    ..ANCHORED
-};
+pub(super) const SMALL: Expectations = ANCHORED.failing(&[
+    KnownFailure::swallowed("deep"),
+    ROUNDED_OTHERWISE,
+    UNSETTLED,
+    KnownFailure::unsettled(Property::Order, "near-overflow deep"),
+    KnownFailure::reordered("emissive"),
+    BEHIND_COINCIDENT,
+    MAGNIFIED,
+]);
 
-pub(super) const MEDIUM: Expectations = Expectations {
-    known_failures: &[ROUNDED_OTHERWISE, UNSETTLED, BEHIND_COINCIDENT],
-    ..ANCHORED
-};
+pub(super) const MEDIUM: Expectations =
+    ANCHORED.failing(&[ROUNDED_OTHERWISE, UNSETTLED, BEHIND_COINCIDENT]);

@@ -1,7 +1,5 @@
-//! What tests and `peelnet stress` expect of the methods in this folder.
-
 use super::{reference, slices};
-use crate::methods::expected::*;
+use crate::methods::prelude::*;
 use peelnet_core::{fragment::points, methods::composite};
 
 pub(super) const METHOD: Expectations = Expectations {

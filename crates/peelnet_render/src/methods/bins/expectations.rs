@@ -1,7 +1,5 @@
-//! What tests and `peelnet stress` expect of the methods in this folder.
-
 use super::{BOUNDS, bounds, range::Bounds, reference};
-use crate::methods::expected::*;
+use crate::methods::prelude::*;
 
 fn of_pixel(spec: &MethodSpec) -> bool {
     bounds(spec, BOUNDS) == Bounds::Pixel
@@ -24,13 +22,11 @@ pub(super) const METHOD: Expectations = Expectations {
     }),
     known_failures: &[
         KnownFailure::swallowed("deep"),
-        KnownFailure::new(
-            Property::Opaque,
-            "alpha-near-one",
+        KnownFailure::translucent(
             "absorbance ends at 4, as shipped: three layers of 0.99 let 1.8 % through each, not 1 %",
         )
         .when(of_pixel),
-        KnownFailure::new(Property::Opaque, "alpha-near-one", BLURRED).when(|s| !of_pixel(s)),
+        KnownFailure::translucent(BLURRED).when(|s| !of_pixel(s)),
         KnownFailure::new(Property::Transmittance, "two-layers", BLURRED).when(|s| !of_pixel(s)),
         KnownFailure::new(Property::Transmittance, "coplanar", FEW_BINS).when(four_of_pixel),
         KnownFailure::new(Property::Steady, "moving-camera", FEW_BINS).when(four_of_pixel),

@@ -7,7 +7,7 @@
 //! Ours: depth is warped as for the other methods; coverage is the exact `T_∞` in a target of its own, not what the last bin
 //! holds; "opaque" raises what such a fragment hides, to [`ABSORBANCE_MAX`], and leaves its opacity, so that one surface stays exact.
 
-use crate::methods::bins::range::{Bounds, Range};
+use crate::methods::bins::range::{Bounds, places};
 use peelnet_core::absorbance::{ABSORBANCE_MAX, DepthWarp, absorbance};
 
 /// Fragments of more opacity hide all that is behind them.
@@ -24,9 +24,9 @@ pub fn transmittances(
     bounds: Bounds,
 ) -> Vec<f64> {
     let zetas = fragments.iter().map(|&(z, _)| warp.apply(z.into()));
-    let range = Range::from_depths(bounds, zetas.clone());
-    let point = |(zeta, &(_, alpha)): (f64, &(f32, f32))| {
-        let position = range.place(zeta) * bins as f64;
+    let places = places(bounds, &zetas.collect::<Vec<_>>());
+    let point = |(place, &(_, alpha)): (f64, &(f32, f32))| {
+        let position = place * bins as f64;
         let bin = (position as usize).min(bins - 1);
         let b = if alpha > OPAQUE {
             ABSORBANCE_MAX
@@ -35,7 +35,7 @@ pub fn transmittances(
         };
         (bin, position - bin as f64, b)
     };
-    let points: Vec<_> = zetas.zip(fragments).map(point).collect();
+    let points: Vec<_> = places.into_iter().zip(fragments).map(point).collect();
     // Absorbance up to the far end of every bin, behind a zero.
     let mut up_to = vec![0.0; bins + 1];
     for &(bin, _, b) in &points {

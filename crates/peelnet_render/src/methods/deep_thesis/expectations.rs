@@ -1,10 +1,9 @@
-//! What tests and `peelnet stress` expect of the methods in this folder.
-
-use crate::methods::{expected::*, learned::learned_transmittances, wboit::is_printed};
-use peelnet_core::{
-    fragment::Fragment,
-    methods::{deep, wboit},
+use crate::methods::{
+    learned::learned_transmittances,
+    prelude::*,
+    wboit::{expectations::composite, is_printed},
 };
+use peelnet_core::methods::deep;
 
 const IN_SCENE_UNITS: &str = "reads depth in scene units (Papakostas 2022)";
 
@@ -16,14 +15,9 @@ pub(super) const METHOD: Expectations = Expectations {
     },
     reference: Some(|s, p| {
         let model = p.model?;
-        let weight = |f: &Fragment| {
+        composite(s, p, |f| {
             let row = deep::Row::new(f, p.fragments);
             model.forward_raw(&[row.linear_depth, row.alpha_sum, row.fragment_count])[0]
-        };
-        Some(if is_printed(s) {
-            wboit::normalised(&wboit::printed(p.fragments, weight), p.background)
-        } else {
-            deep::composite(p.fragments, p.background, weight)
         })
     }),
     estimate: Some(learned_transmittances),

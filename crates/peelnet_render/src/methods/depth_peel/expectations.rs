@@ -1,12 +1,8 @@
-//! What tests and `peelnet stress` expect of the methods in this folder.
-
-use crate::{methods::expected::*, passes::peeling::PASSES};
+use crate::{methods::prelude::*, passes::peeling::PASSES};
 use peelnet_core::methods::over;
 
 /// Coincident fragments that are drawn in another order.
-pub(in crate::methods) const COINCIDENT: KnownFailure = KnownFailure::new(
-    Property::Order,
-    "coplanar",
+pub(in crate::methods) const COINCIDENT: KnownFailure = KnownFailure::coincident(
     "coincident fragments are separated by a depth test that keeps the first drawn, because portable WebGPU can compare no triangle beside the depth; they must be drawn in the order of their numbers, as the renderer does, or some are lost",
 );
 

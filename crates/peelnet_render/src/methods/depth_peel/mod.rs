@@ -3,9 +3,9 @@
 pub(super) mod expectations;
 
 use crate::geometry::{
+    depth_peel::{DepthPeel, SINGLE_BYTES},
     frame::clear_color,
     fullscreen::FullscreenPass,
-    single::{self, SinglePeel},
 };
 use crate::gpu::{bind::Bind, wgpu};
 use crate::methods::prelude::*;
@@ -32,7 +32,7 @@ pub(super) const METHOD: Method = Method {
 /// Layers peeled from the front, one a pass, and what is composited so far.
 #[derive(Debug)]
 pub(super) struct Layers {
-    pub peel: SinglePeel,
+    pub peel: DepthPeel,
     /// In turn.
     pub accumulated: [wgpu::TextureView; 2],
     /// By parity of the pass, without and with counting.
@@ -42,11 +42,11 @@ pub(super) struct Layers {
 
 impl Layers {
     /// Bytes a pixel.
-    pub const BYTES: f64 = single::BYTES_PER_PIXEL + 2.0 * 16.0;
+    pub const BYTES: f64 = SINGLE_BYTES + 2.0 * 16.0;
 
     pub fn new(b: &Build<'_>, found: &wgpu::Buffer) -> Result<Self, RenderError> {
         let (gpu, frame) = (&b.scene.gpu, b.frame);
-        let peel = SinglePeel::new(b.scene, frame, &[])?;
+        let peel = DepthPeel::single(b.scene, frame, &[])?;
         let format = wgpu::TextureFormat::Rgba32Float;
         let none = wgpu::TextureUsages::empty();
         let texture = || gpu.texture("accumulated", format, frame.size, 1, none);
@@ -54,8 +54,8 @@ impl Layers {
         let under = |features: &[&str], from: usize| {
             let entries = [
                 ("before", Bind::Texture(&accumulated[from])),
-                ("layer", Bind::Texture(&peel.layer)),
-                ("key", Bind::Texture(&peel.keys[1 - from])),
+                ("layer", Bind::Texture(&peel.layers[0])),
+                ("key", Bind::Texture(&peel.reached[1 - from])),
                 ("found", Bind::Write(found)),
             ];
             let (shader, target) = ("methods::depth_peel::under", [Some(format.into())]);
@@ -91,16 +91,17 @@ impl Peel for Layers {
     const LAYERS: u32 = 1;
 
     fn begin(&self, cx: &mut DrawContext<'_, '_>) {
-        self.peel.init(cx.recorder);
+        self.peel.init(cx.recorder, cx.scene, cx.frame);
         let clear = [clear_color(&self.accumulated[0], [0.0, 0.0, 0.0, 1.0])];
         drop(cx.recorder.render("clear", &clear, None));
     }
 
     fn pass(&self, cx: &mut DrawContext<'_, '_>, number: u32) {
         let from = (number % 2) as usize;
-        self.peel.peel(cx.recorder, cx.scene, cx.frame, number);
+        self.peel
+            .peel(cx.recorder, cx.scene, cx.frame, number, false);
         let target = [clear_color(&self.accumulated[1 - from], [0.0; 4])];
-        self.under[usize::from(cx.counting)][from].draw(cx.recorder, &target);
+        self.under[usize::from(cx.counting)][from].draw(cx.recorder, &target, None);
     }
 
     fn resolve(&self, passes: u32) -> &FullscreenPass {

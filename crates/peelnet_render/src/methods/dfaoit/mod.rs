@@ -5,7 +5,7 @@ mod expectations;
 
 use crate::methods::{depth_peel::Layers, prelude::*};
 use crate::passes::{
-    Given,
+    Allocated,
     peeling::{self, Peel as _},
 };
 use peelnet_core::methods::dfaoit;
@@ -42,8 +42,8 @@ fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
         Target::half("all", 4, Blend::AddTransmit),
         Target::half("count", 1, Blend::Add),
     ]);
-    let second_key = p.given("second", Given::Texture(front.peel.keys[0].clone()));
-    let composited = p.given("front", Given::Texture(front.accumulated[0].clone()));
+    let second_key = p.given("second", Allocated::Texture(front.peel.reached[0].clone()));
+    let composited = p.given("front", Allocated::Texture(front.accumulated[0].clone()));
     p.geometry("methods::dfaoit::gather", Needs::COLOR | Needs::TRIANGLE)
         .reads([second_key])
         .writes(sums.iter().copied());

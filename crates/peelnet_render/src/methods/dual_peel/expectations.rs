@@ -1,12 +1,8 @@
-//! What tests and `peelnet stress` expect of the methods in this folder.
-
 use super::colors;
-use crate::{methods::expected::*, passes::peeling::PASSES};
+use crate::{methods::prelude::*, passes::peeling::PASSES};
 use peelnet_core::methods::over;
 
-const COINCIDENT: KnownFailure = KnownFailure::new(
-    Property::Order,
-    "coplanar",
+const COINCIDENT: KnownFailure = KnownFailure::coincident(
     "coincident fragments are blended into one layer, so that they must be drawn in the order of their numbers",
 );
 

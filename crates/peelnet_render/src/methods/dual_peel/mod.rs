@@ -4,7 +4,7 @@
 mod expectations;
 
 use crate::geometry::{
-    dual::{self, DualPeel},
+    depth_peel::{DUAL_BYTES, DepthPeel},
     frame::{attachment, clear_color},
     fullscreen::FullscreenPass,
 };
@@ -38,7 +38,7 @@ pub(super) const METHOD: Method = Method {
 
 #[derive(Debug)]
 struct Dual {
-    peel: DualPeel,
+    peel: DepthPeel,
     /// Layers from the front and from the back, with what they start from; alpha is the transmittance of each stack.
     stacks: [(wgpu::TextureView, [f64; 4]); 2],
     /// By parity of the pass.
@@ -63,14 +63,14 @@ fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
     };
     let stacks = [texture(targets[0])?, texture(targets[1])?];
     let found = peeling::found_buffer(b)?;
-    let peel = DualPeel::new(b.scene, frame, &[], Some(&found))?;
+    let peel = DepthPeel::dual(b.scene, frame, &[], Some(&found))?;
     let states = targets.map(|t| Some(t.state()));
     let blend = |from: usize| {
         let entries = [
-            ("before", Bind::Texture(&peel.ranges[from])),
-            ("after", Bind::Texture(&peel.ranges[1 - from])),
-            ("front", Bind::Texture(&peel.front)),
-            ("back", Bind::Texture(&peel.back)),
+            ("before", Bind::Texture(&peel.reached[from])),
+            ("after", Bind::Texture(&peel.reached[1 - from])),
+            ("front", Bind::Texture(&peel.layers[0])),
+            ("back", Bind::Texture(&peel.layers[1])),
             ("found", Bind::Write(&found)),
         ];
         let shader = "methods::dual_peel::blend";
@@ -107,7 +107,7 @@ impl Peel for Dual {
             .peel(cx.recorder, cx.scene, cx.frame, number, cx.counting);
         let stacks = self.stacks.each_ref();
         let targets = stacks.map(|(view, _)| attachment(view, wgpu::LoadOp::Load));
-        self.blend[(number % 2) as usize].draw(cx.recorder, &targets);
+        self.blend[(number % 2) as usize].draw(cx.recorder, &targets, None);
     }
 
     fn resolve(&self, _: u32) -> &FullscreenPass {
@@ -115,6 +115,6 @@ impl Peel for Dual {
     }
 
     fn besides(&self) -> (u32, u32, f64) {
-        (1, 2, dual::BYTES_PER_PIXEL + self.blended_bytes)
+        (1, 2, DUAL_BYTES + self.blended_bytes)
     }
 }

@@ -1,16 +1,12 @@
-//! What tests and `peelnet stress` expect of the methods in this folder.
-
 use super::{reference, tail};
-use crate::methods::{expected::*, stored_colors};
+use crate::methods::{prelude::*, stored_colors};
 
 /// Few enough places that tails of hundreds of fragments are left in the stress cases.
 fn long_tails(spec: &MethodSpec) -> bool {
     spec.number() <= 8 && half_sums(spec)
 }
 
-const TOO_FEW_PLACES: KnownFailure = KnownFailure::new(
-    Property::Order,
-    "coplanar",
+const TOO_FEW_PLACES: KnownFailure = KnownFailure::coincident(
     "of more coincident fragments than places, those that arrive first are kept: places are ordered by depth in one atomic word, and portable WebGPU has no atomics of 64 bits, which the triangle would need beside it",
 )
 .when(|s| s.number() < 16);
@@ -25,30 +21,24 @@ pub(super) const METHOD: Expectations = Expectations {
     ..Expectations::DEFAULT
 };
 
-pub(super) const PLAIN: Expectations = Expectations {
-    known_failures: &[
-        TOO_FEW_PLACES,
-        KnownFailure::swallowed("alpha-tiny deep").when(long_tails),
-        stored_colors::in_bytes(
-            Property::Background,
-            "alpha-zero coplanar emissive far grazing intersecting isolated moving-camera opaque-mix thin-slab \
-             two-layers wide-range",
-        ),
-        stored_colors::in_bytes(
-            Property::Hull,
-            "coplanar emissive grazing intersecting moving-camera near-overflow",
-        ),
-        stored_colors::in_bytes(Property::Single, "emissive grazing"),
-    ],
-    ..METHOD
-};
+pub(super) const PLAIN: Expectations = METHOD.failing(&[
+    TOO_FEW_PLACES,
+    KnownFailure::swallowed("alpha-tiny deep").when(long_tails),
+    stored_colors::in_bytes(
+        Property::Background,
+        "alpha-zero coplanar emissive far grazing intersecting isolated moving-camera opaque-mix thin-slab \
+         two-layers wide-range",
+    ),
+    stored_colors::in_bytes(
+        Property::Hull,
+        "coplanar emissive grazing intersecting moving-camera near-overflow",
+    ),
+    stored_colors::in_bytes(Property::Single, "emissive grazing"),
+]);
 
-pub(super) const HYBRID: Expectations = Expectations {
-    known_failures: &[
-        TOO_FEW_PLACES,
-        KnownFailure::swallowed("deep").when(long_tails),
-        KnownFailure::reordered("deep").when(long_tails),
-        KnownFailure::overflowing("near-overflow").when(long_tails),
-    ],
-    ..METHOD
-};
+pub(super) const HYBRID: Expectations = METHOD.failing(&[
+    TOO_FEW_PLACES,
+    KnownFailure::swallowed("deep").when(long_tails),
+    KnownFailure::reordered("deep").when(long_tails),
+    KnownFailure::overflowing("near-overflow").when(long_tails),
+]);

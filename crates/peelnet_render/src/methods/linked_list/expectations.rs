@@ -1,6 +1,4 @@
-//! What tests and `peelnet stress` expect of the methods in this folder.
-
-use crate::methods::{expected::*, stored_colors};
+use crate::methods::{prelude::*, stored_colors};
 use peelnet_core::methods::over;
 
 pub(super) const METHOD: Expectations = Expectations {

@@ -13,7 +13,7 @@ use crate::methods::{
     prelude::*,
     stored_colors::{self, COLORS},
 };
-use crate::passes::Given;
+use crate::passes::Allocated;
 
 const NODES: Parameter = Parameter::whole(
     "nodes",
@@ -64,8 +64,8 @@ fn passes(
     let features = || layout.into_iter().chain(tinted.then_some("tinted"));
     let mut p = Passes::new(b.conditions());
     let heads = p.storage("heads", 4, 0);
-    let found = p.given("found", Given::Storage(found.clone()));
-    let camera = p.given("camera", Given::Uniform(b.scene.camera.clone()));
+    let found = p.given("found", Allocated::Storage(found.clone()));
+    let camera = p.given("camera", Allocated::Uniform(b.scene.camera.clone()));
     // Not cleared: lists end where their links say.
     let mut pool = |name, bytes: u32| p.uncleared(name, nodes * u64::from(bytes));
     let next = pool("next", 4);

@@ -3,7 +3,6 @@
 
 mod expectations;
 
-use super::expected::half_statistics;
 use crate::methods::prelude::*;
 use peelnet_core::methods::moments::{Settings, trigonometric};
 
@@ -48,9 +47,9 @@ fn own_out(spec: &MethodSpec) -> bool {
     OWN.word(spec) == "out"
 }
 
-/// The settings that were asked for; by default those of the paper for the moments' number and precision.
-fn settings(spec: &MethodSpec) -> Settings {
-    let (paper, bias, of_half) = match spec.name() {
+/// The paper's settings for the moments' number, the parameter of the bias, and its default for 16-bit moments.
+fn published(spec: &MethodSpec) -> (Settings, Parameter, f64) {
+    match spec.name() {
         "mboit4" => (Settings::FOUR, BIAS_4, 6e-5),
         "mboit6" => (Settings::SIX, BIAS_6, 6e-4),
         "mboit8" => (Settings::EIGHT, BIAS_8, 2.5e-3),
@@ -58,7 +57,12 @@ fn settings(spec: &MethodSpec) -> Settings {
             let paper = Settings::trigonometric(spec.number() as usize);
             (paper, BIAS_TRIG, trigonometric::BIAS_HALF)
         }
-    };
+    }
+}
+
+/// The settings that were asked for; by default the published ones for the moments' precision.
+fn settings(spec: &MethodSpec) -> Settings {
+    let (paper, bias, of_half) = published(spec);
     Settings {
         overestimation: OVERESTIMATION.number(spec),
         bias: match bias.given::<f64>(spec) {

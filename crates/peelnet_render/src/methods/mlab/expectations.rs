@@ -1,7 +1,5 @@
-//! What tests and `peelnet stress` expect of the methods in this folder.
-
 use super::reference;
-use crate::methods::expected::*;
+use crate::methods::prelude::*;
 
 pub(super) const METHOD: Expectations = Expectations {
     guarantees: |_| Guarantees {

@@ -5,11 +5,9 @@ pub mod reference;
 
 use crate::methods::prelude::*;
 
-const NO_ORDER: &str = "it needs ordered access to pixels, which WebGPU lacks";
-
 pub(super) const METHOD: Method = Method {
     numbered: Numbered::range(1, 64),
-    cpu_only: Some(NO_ORDER),
+    cpu_only: Some("it needs ordered access to pixels, which WebGPU lacks"),
     curve: &["-4", "-2", "-8"],
     expectations: expectations::METHOD,
     ..Method::new(

@@ -1,6 +1,4 @@
-//! What tests and `peelnet stress` expect of the methods in this folder.
-
-use crate::methods::{expected::*, learned::learned_transmittances};
+use crate::methods::{learned::learned_transmittances, prelude::*};
 use peelnet_core::methods::deep;
 
 pub(super) const METHOD: Expectations = Expectations {
@@ -21,9 +19,7 @@ pub(super) const METHOD: Expectations = Expectations {
         KnownFailure::swallowed("deep near-overflow"),
         KnownFailure::unsettled(Property::Order, "deep near-overflow"),
         KnownFailure::unsettled(Property::Transmittance, "isolated"),
-        KnownFailure::new(
-            Property::Opaque,
-            "alpha-near-one",
+        KnownFailure::translucent(
             "the network's own error; it reads the same moments (Tsopouridis et al. 2024)",
         ),
         KnownFailure::new(

@@ -1,7 +1,5 @@
-//! What tests and `peelnet stress` expect of the methods in this folder.
-
 use super::sorts;
-use crate::methods::expected::*;
+use crate::methods::prelude::*;
 use peelnet_core::{fragment::Fragment, methods::over};
 
 /// Over-blending in the order of drawing: what is drawn last lies in front.
@@ -33,10 +31,7 @@ pub(super) const PAINTER: Expectations = Expectations {
     ..Expectations::DEFAULT
 };
 
-pub(super) const OBJECTS: Expectations = Expectations {
-    known_failures: &[
-        SWALLOWED,
-        KnownFailure::new(Property::Steady, "passing", "objects swap whole (popping)").when(sorts),
-    ],
-    ..PAINTER
-};
+pub(super) const OBJECTS: Expectations = PAINTER.failing(&[
+    SWALLOWED,
+    KnownFailure::new(Property::Steady, "passing", "objects swap whole (popping)").when(sorts),
+]);

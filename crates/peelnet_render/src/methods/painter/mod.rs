@@ -47,24 +47,18 @@ pub(super) const TRIANGLES: Method = painter(
     "triangles sorted on the CPU, hardware blending",
 );
 
-/// Premultiplied colour and alpha, as the sum of all fragments takes them.
-const SHADER: &str = "methods::weighted_sum::gather";
-
-const PASS: &str = "blend";
-
 fn passes(p: &mut Passes<'_>) {
     p.order = order(p.on.spec);
-    if p.on.over {
-        // As engines draw: no targets of its own and no pass over the pixels.
-        let output = p.output();
-        p.geometry(SHADER, Needs::COLOR)
-            .label(PASS)
-            .writes([output]);
-    } else {
-        let layers = p.target(Target::half("layers", 4, Blend::Over));
-        p.geometry(SHADER, Needs::COLOR)
-            .label(PASS)
-            .writes([layers]);
+    // Over a target as engines draw: no targets of its own and no pass over the pixels.
+    let layers = match p.on.over {
+        true => p.output(),
+        false => p.target(Target::half("layers", 4, Blend::Over)),
+    };
+    // Premultiplied colour and alpha, as the sum of all fragments takes them.
+    p.geometry("methods::weighted_sum::gather", Needs::COLOR)
+        .label("blend")
+        .writes([layers]);
+    if !p.on.over {
         p.resolve("methods::depth_peel::resolve", [layers]);
     }
 }

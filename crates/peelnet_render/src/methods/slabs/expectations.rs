@@ -1,7 +1,5 @@
-//! What tests and `peelnet stress` expect of the methods in this folder.
-
 use super::{KEEP, RANGE, reference};
-use crate::methods::expected::*;
+use crate::methods::prelude::*;
 
 fn is_small(spec: &MethodSpec) -> bool {
     KEEP.word(spec) == "small"
@@ -30,31 +28,19 @@ const COINCIDENT: KnownFailure = KnownFailure::new(
     "sixteen coincident layers are a slab's nearest all at once, and without its farthest what lies behind them is guessed",
 );
 
-pub(super) const METHOD: Expectations = Expectations {
-    known_failures: &[
-        KnownFailure::swallowed("deep"),
-        KnownFailure::reordered("deep"),
-        BORDERS.when(is_of_pixel),
-        COINCIDENT.when(is_small),
-    ],
-    ..SLABS
-};
+pub(super) const METHOD: Expectations = SLABS.failing(&[
+    KnownFailure::swallowed("deep"),
+    KnownFailure::reordered("deep"),
+    BORDERS.when(is_of_pixel),
+    COINCIDENT.when(is_small),
+]);
 
-pub(super) const SMALL: Expectations = Expectations {
-    known_failures: &[
-        KnownFailure::swallowed("deep"),
-        BORDERS.when(is_of_pixel),
-        COINCIDENT,
-    ],
-    ..SLABS
-};
+pub(super) const SMALL: Expectations = SLABS.failing(&[
+    KnownFailure::swallowed("deep"),
+    BORDERS.when(is_of_pixel),
+    COINCIDENT,
+]);
 
-pub(super) const MEDIUM: Expectations = Expectations {
-    known_failures: &[KnownFailure::swallowed("deep")],
-    ..SLABS
-};
+pub(super) const MEDIUM: Expectations = SLABS.failing(&[KnownFailure::swallowed("deep")]);
 
-pub(super) const LARGE: Expectations = Expectations {
-    known_failures: &[KnownFailure::swallowed("deep")],
-    ..SLABS
-};
+pub(super) const LARGE: Expectations = SLABS.failing(&[KnownFailure::swallowed("deep")]);

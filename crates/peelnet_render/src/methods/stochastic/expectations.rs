@@ -1,7 +1,5 @@
-//! What tests and `peelnet stress` expect of the methods in this folder.
-
 use super::reference;
-use crate::methods::expected::*;
+use crate::methods::prelude::*;
 
 pub(super) const METHOD: Expectations = Expectations {
     guarantees: |_| Guarantees {
@@ -16,9 +14,7 @@ pub(super) const METHOD: Expectations = Expectations {
         KnownFailure::swallowed("deep near-overflow"),
         KnownFailure::reordered("deep near-overflow"),
         KnownFailure::swallowed("alpha-tiny").when(|s| s.number() >= 64 && half_sums(s)),
-        KnownFailure::new(
-            Property::Opaque,
-            "alpha-near-one",
+        KnownFailure::translucent(
             "noise: one sample of sixteen weighs 0.06 (Enderton et al. 2010)",
         ),
     ],

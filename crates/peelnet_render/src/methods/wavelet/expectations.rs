@@ -1,7 +1,5 @@
-//! What tests and `peelnet stress` expect of the methods in this folder.
-
 use super::{reference, settings};
-use crate::methods::{bins::range::Bounds, expected::*};
+use crate::methods::{bins::range::Bounds, prelude::*};
 
 fn of_frame(spec: &MethodSpec) -> bool {
     settings(spec).bounds == Bounds::Frame
@@ -27,9 +25,7 @@ pub(super) const METHOD: Expectations = Expectations {
             "rank 3 separates eight depths (Aizenshtein et al. 2022)",
         )
         .when(|s| of_frame(s) && settings(s).own_share_out),
-        KnownFailure::new(
-            Property::Opaque,
-            "alpha-near-one",
+        KnownFailure::translucent(
             "eight bins over the whole frame's depth blur what lies close together",
         )
         .when(|s| of_frame(s) && s.number() == 2),

@@ -6,11 +6,8 @@
 //! fragment's own share taken out, are from the write-up by Osorio López (osor.io/OIT) and from Flywheel's shaders
 //! (`signal_corrected_transmittance`).
 
-use crate::methods::bins::range::{Bounds, Range};
+use crate::methods::bins::range::{Bounds, places};
 use peelnet_core::absorbance::DepthWarp;
-
-/// Bins of rank 3, the most; the last one lies behind all depths.
-const MOST_BINS: usize = 16;
 
 /// What the wavelets are spread over, and asked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,34 +20,29 @@ pub struct Settings {
     pub own_share_out: bool,
 }
 
-/// Average absorbance in front, over each bin.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Averages {
-    averages: [f64; MOST_BINS],
-    bins: usize,
-}
+/// Average absorbance in front, over each bin. The last one lies behind all depths.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Averages(Vec<f64>);
 
 impl Averages {
-    /// Of a pixel without fragments. `rank` is at most 3.
-    pub const fn of_rank(rank: u32) -> Self {
-        Self {
-            averages: [0.0; MOST_BINS],
-            bins: 2 << rank,
-        }
+    /// Of a pixel without fragments.
+    pub fn of_rank(rank: u32) -> Self {
+        Self(vec![0.0; 2 << rank])
     }
 
     /// Bin and place in it, 0 … 1, of a place in the range, 0 … 1.
     fn bin(&self, place: f64) -> (usize, f64) {
-        let position = place * (self.bins - 1) as f64;
-        let bin = (position as usize).min(self.bins - 1);
+        let last = self.0.len() - 1;
+        let position = place * last as f64;
+        let bin = (position as usize).min(last);
         (bin, position - bin as f64)
     }
 
     /// Adds absorbance `b` at a place in the range.
     pub fn add(&mut self, b: f64, place: f64) {
         let (bin, t) = self.bin(place);
-        self.averages[bin] += b * (1.0 - t);
-        for later in &mut self.averages[bin + 1..self.bins] {
+        self.0[bin] += b * (1.0 - t);
+        for later in &mut self.0[bin + 1..] {
             *later += b;
         }
     }
@@ -58,8 +50,8 @@ impl Averages {
     /// The estimate of the absorbance in front of a place in the range.
     pub fn in_front(&self, place: f64) -> f64 {
         let (bin, t) = self.bin(place);
-        let before = bin.checked_sub(1).map_or(0.0, |i| self.averages[i]);
-        before + (self.averages[bin] - before) * t
+        let before = bin.checked_sub(1).map_or(0.0, |i| self.0[i]);
+        before + (self.0[bin] - before) * t
     }
 
     /// What absorbance `b` at a place adds to the estimate there: nothing before its bin, and of its bin what lies behind it.
@@ -71,14 +63,15 @@ impl Averages {
 
 /// The transmittance in front of each of a pixel's fragments, given as (linear depth, α).
 pub fn transmittances(fragments: &[(f32, f32)], warp: &DepthWarp, settings: &Settings) -> Vec<f64> {
-    let mut points = peelnet_core::methods::points(fragments, warp);
-    let range = Range::from_depths(settings.bounds, points.iter().map(|p| p.1));
+    let points = peelnet_core::methods::points(fragments, warp);
+    let zetas: Vec<f64> = points.iter().map(|p| p.1).collect();
+    let places = places(settings.bounds, &zetas);
+    let points = || points.iter().map(|p| p.0).zip(places.iter().copied());
     let mut averages = Averages::of_rank(settings.rank);
-    for (b, place, _) in &mut points {
-        *place = range.place(*place);
-        averages.add(*b, *place);
+    for (b, place) in points() {
+        averages.add(b, place);
     }
-    let in_front = points.iter().map(|&(b, place, _)| {
+    let in_front = points().map(|(b, place)| {
         let own = if settings.own_share_out {
             averages.own(b, place)
         } else {
@@ -102,7 +95,7 @@ mod tests {
                 a.add(b, place);
             }
             assert_eq!(a.in_front(0.0), 0.0);
-            assert!((a.averages[a.bins - 1] - 2.6).abs() < 1e-12);
+            assert!((a.0[a.0.len() - 1] - 2.6).abs() < 1e-12);
             let at = |i: i32| a.in_front(f64::from(i) / 1000.0);
             assert!((1..=1000).all(|i| at(i) >= at(i - 1) - 1e-12));
         }

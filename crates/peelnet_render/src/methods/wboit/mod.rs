@@ -1,6 +1,6 @@
 //! `wboit-*`: the mean of colours weighted by a named weight, with the exact coverage (McGuire & Bavoil 2013, eq 6). One geometry pass.
 
-mod expectations;
+pub(super) mod expectations;
 
 use crate::methods::prelude::*;
 use crate::passes::TINTED;
@@ -29,7 +29,7 @@ pub(super) const COMPOSITE: Parameter = Parameter::words(
     &["eq6", "printed"],
 );
 
-/// Whether a method of the thesis composites as printed.
+/// Whether it composites as printed: only methods of the thesis have the parameter.
 pub(super) fn is_printed(spec: &MethodSpec) -> bool {
     COMPOSITE.word(spec) == "printed"
 }
@@ -126,8 +126,7 @@ fn passes(p: &mut Passes<'_>) {
         Weight::Smoke { k } => offset = k,
         _ => {}
     }
-    // Only the thesis's weight has the parameter.
-    let printed = (weight == Weight::Papakostas && is_printed(p.on.spec)).then_some("printed");
+    let printed = is_printed(p.on.spec).then_some("printed");
     let features: Vec<_> = [feature].into_iter().chain(printed).collect();
     // `{:?}` prints a float with a point or exponent, and as the shortest text that reads back the same.
     p.parameters = format!(

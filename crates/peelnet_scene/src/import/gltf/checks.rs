@@ -1,58 +1,22 @@
-//! Checks that the `gltf` crate does not do: it panics on positions out of range, and on an accessor of the wrong type.
+//! Checks that the `gltf` crate does not do: it panics on positions out of range, on an image, a camera or a light that lacks its part, and on
+//! an accessor of the wrong type.
 
 use crate::{budget::MAX_TRIANGLES, files::MAX_MESH};
 use gltf::{
     Semantic,
     accessor::{DataType, Dimensions},
-    json::extensions::ENABLED_EXTENSIONS,
+    json::{
+        Image, Root,
+        camera::Type,
+        extensions::{
+            ENABLED_EXTENSIONS,
+            scene::khr_lights_punctual::{Light, Type as Kind},
+        },
+        validation::Checked,
+    },
 };
 use peelnet_core::files::printable;
 use serde_json::Value;
-
-/// Checks the extensions that the file needs, and numbers that the crate does not check.
-pub(super) fn check_references(document: &Value) -> Result<(), String> {
-    // The crate would look for elements that such an extension leaves out.
-    let required = document["extensionsRequired"].as_array();
-    let mut required = required.into_iter().flatten().filter_map(Value::as_str);
-    if let Some(name) = required.find(|name| !ENABLED_EXTENSIONS.contains(name)) {
-        return Err(format!(
-            "needs the extension {}, which is not read; export it without",
-            printable(name)
-        ));
-    }
-    check_numbers(document, document, "")
-}
-
-/// Checks, in a value of a field, the numbers of positions, which the crate uses before it checks them, and of what is supplied to files
-/// that lack it.
-fn check_numbers(document: &Value, value: &Value, field: &str) -> Result<(), String> {
-    match value {
-        Value::Object(fields) => {
-            let mut fields = fields.iter().filter(|(name, _)| *name != "extras");
-            fields.try_for_each(|(name, inner)| check_numbers(document, inner, name))
-        }
-        Value::Array(all) => all
-            .iter()
-            .try_for_each(|inner| check_numbers(document, inner, field)),
-        Value::Number(number) => {
-            let name = match field {
-                "POSITION" => "accessors",
-                "bufferView" => "bufferViews",
-                "buffer" => "buffers",
-                "scene" => "scenes",
-                _ => return Ok(()),
-            };
-            let length = list(&document[name]).len() as u64;
-            if number.as_u64().is_some_and(|n| n < length) {
-                return Ok(());
-            }
-            Err(format!(
-                "'{field}' is {number}, but there are {length} {name}; export the file again"
-            ))
-        }
-        _ => Ok(()),
-    }
-}
 
 /// Checks that the file is of glTF 2, and needs nothing newer than 2.0 of its reader.
 pub(super) fn check_version(document: &Value) -> Result<(), String> {
@@ -72,33 +36,54 @@ pub(super) fn check_version(document: &Value) -> Result<(), String> {
     ))
 }
 
-/// Checks that images, cameras and lights hold what their kind needs.
-pub(super) fn check_kinds(document: &Value) -> Result<(), String> {
+/// Checks that the file needs no extension that the crate does not know: it would look for elements that such an extension leaves out.
+pub(super) fn check_extensions(document: &Value) -> Result<(), String> {
+    let required = document["extensionsRequired"].as_array();
+    let mut required = required.into_iter().flatten().filter_map(Value::as_str);
+    let unknown = required.find(|name| !ENABLED_EXTENSIONS.contains(name));
+    unknown.map_or(Ok(()), |name| {
+        Err(format!(
+            "needs the extension {}, which is not read; export it without",
+            printable(name)
+        ))
+    })
+}
+
+/// Checks that positions are there, which the crate's own check takes for granted, and that images, cameras and lights hold what their kind
+/// needs.
+pub(super) fn check_elements(root: &Root) -> Result<(), String> {
+    let primitives = root.meshes.iter().flat_map(|mesh| &mesh.primitives);
+    let positions = Checked::Valid(Semantic::Positions);
+    let mut positions = primitives.filter_map(|p| p.attributes.get(&positions));
+    if let Some(number) = positions.find(|number| root.get(**number).is_none()) {
+        return Err(format!(
+            "'POSITION' is {number}, but there are {} accessors; export the file again",
+            root.accessors.len()
+        ));
+    }
     let lacks = |what: &str, i: usize, part: &str| {
         Err(format!("{what} {i} lacks {part}; export the file again"))
     };
-    for (i, image) in list(&document["images"]).iter().enumerate() {
-        if !image["uri"].is_string() && image["bufferView"].is_null() {
-            return lacks("image", i, "a uri or a buffer view");
+    let is_empty = |image: &Image| image.uri.is_none() && image.buffer_view.is_none();
+    if let Some(i) = root.images.iter().position(is_empty) {
+        return lacks("image", i, "a uri or a buffer view");
+    }
+    for (i, camera) in root.cameras.iter().enumerate() {
+        match camera.type_ {
+            Checked::Valid(Type::Perspective) if camera.perspective.is_none() => {
+                return lacks("camera", i, "perspective");
+            }
+            Checked::Valid(Type::Orthographic) if camera.orthographic.is_none() => {
+                return lacks("camera", i, "orthographic");
+            }
+            _ => {}
         }
     }
-    for (i, camera) in list(&document["cameras"]).iter().enumerate() {
-        if let Some(kind) = camera["type"].as_str()
-            && !camera[kind].is_object()
-        {
-            return lacks("camera", i, &printable(kind));
-        }
-    }
-    let lights = list(&document["extensions"]["KHR_lights_punctual"]["lights"]);
-    let is_broken = |light: &Value| light["type"] == "spot" && !light["spot"].is_object();
-    if let Some(i) = lights.iter().position(is_broken) {
-        return lacks("light", i, "spot");
-    }
-    Ok(())
-}
-
-pub(super) fn list(value: &Value) -> &[Value] {
-    value.as_array().map_or(&[], Vec::as_slice)
+    let lights: &[Light] = root.as_ref();
+    let spot = Checked::Valid(Kind::Spot);
+    let is_broken = |light: &Light| light.type_ == spot && light.spot.is_none();
+    let broken = lights.iter().position(is_broken);
+    broken.map_or(Ok(()), |i| lacks("light", i, "spot"))
 }
 
 /// Whether an accessor has the type that its meaning needs, or that of indices, and can be addressed.

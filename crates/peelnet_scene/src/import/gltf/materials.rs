@@ -7,7 +7,7 @@ use crate::{
     specular_glossiness::{Values, convert},
     texture::{Maps, Texture, Wrap},
 };
-use glam::{Mat2, Vec2};
+use glam::{Affine2, Vec2};
 use gltf::{
     material::{AlphaMode, PbrSpecularGlossiness},
     texture::{MagFilter, WrappingMode},
@@ -16,32 +16,24 @@ use peelnet_core::files::printable;
 use std::sync::Arc;
 
 /// The UV set of a texture, and the transform of its UVs.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Placement {
     pub set: u32,
-    pub transform: (Mat2, Vec2),
+    pub transform: Affine2,
 }
 
 impl Placement {
-    const PLAIN: Self = Self {
-        set: 0,
-        transform: (Mat2::IDENTITY, Vec2::ZERO),
-    };
-
     /// KHR_texture_transform: scaled, turned, moved.
     fn of(info: &gltf::texture::Info<'_>) -> Self {
+        let set = info.tex_coord();
         let Some(t) = info.texture_transform() else {
-            return Self {
-                set: info.tex_coord(),
-                ..Self::PLAIN
-            };
+            let transform = Affine2::IDENTITY;
+            return Self { set, transform };
         };
-        let (sin, cos) = t.rotation().sin_cos();
-        let [x, y] = t.scale();
-        let turned = Mat2::from_cols(Vec2::new(cos, -sin) * x, Vec2::new(sin, cos) * y);
+        let [scale, offset] = [t.scale(), t.offset()].map(Vec2::from);
         Self {
-            set: t.tex_coord().unwrap_or(info.tex_coord()),
-            transform: (turned, t.offset().into()),
+            set: t.tex_coord().unwrap_or(set),
+            transform: Affine2::from_scale_angle_translation(scale, -t.rotation(), offset),
         }
     }
 }
@@ -59,22 +51,18 @@ fn placed_textures<'a>(m: &gltf::Material<'a>) -> [Option<(gltf::Texture<'a>, Pl
         Some(pbr) => [pbr.diffuse_texture(), pbr.specular_glossiness_texture()],
         None => [pbr.base_color_texture(), pbr.metallic_roughness_texture()],
     };
-    let infos = [color, finish, m.emissive_texture()];
+    let placed = [color, finish, m.emissive_texture()]
+        .map(|info| info.map(|t| (t.texture(), Placement::of(&t))));
     // The crate does not return the transforms of normal and occlusion maps: they are taken to be the first of the others'.
-    let shared = infos.iter().flatten().map(Placement::of).next();
-    let transform = shared.unwrap_or(Placement::PLAIN).transform;
+    let first = placed.iter().flatten().next();
+    let transform = first.map_or(Affine2::IDENTITY, |(_, placement)| placement.transform);
     let shared = |set: u32| Placement { set, transform };
-    let [color, metallic_roughness, emissive] =
-        infos.map(|info| info.map(|t| (t.texture(), Placement::of(&t))));
+    let [color, finish, emissive] = placed;
     let normal = m.normal_texture();
+    let normal = normal.map(|t| (t.texture(), shared(t.tex_coord())));
     let occlusion = m.occlusion_texture();
-    [
-        color,
-        normal.map(|t| (t.texture(), shared(t.tex_coord()))),
-        metallic_roughness,
-        occlusion.map(|t| (t.texture(), shared(t.tex_coord()))),
-        emissive,
-    ]
+    let occlusion = occlusion.map(|t| (t.texture(), shared(t.tex_coord())));
+    [color, normal, finish, occlusion, emissive]
 }
 
 impl Reader<'_, '_> {
@@ -125,7 +113,7 @@ impl Reader<'_, '_> {
     fn maps(&mut self, m: &gltf::Material<'_>) -> (Maps, Placement) {
         let textures = placed_textures(m);
         let mut placements = textures.iter().flatten().map(|(_, placement)| *placement);
-        let placement = placements.next().unwrap_or(Placement::PLAIN);
+        let placement = placements.next().unwrap_or_default();
         let samplers = textures.iter().flatten().map(|(t, _)| {
             let sampler = t.sampler();
             (sampler.wrap_s(), sampler.wrap_t(), sampler.mag_filter())

@@ -85,10 +85,9 @@ impl Reader<'_, '_> {
             });
             colors.collect::<Vec<_>>()
         });
-        let (turned, moved) = placement.transform;
         let uvs = reader.read_tex_coords(placement.set).into_iter();
         let uvs = uvs.flat_map(|uvs| uvs.into_f32());
-        let uvs = uvs.map(|uv| turned * Vec2::from(uv) + moved);
+        let uvs = uvs.map(|uv| placement.transform.transform_point2(uv.into()));
         let or_zero = |uv: Vec2| if uv.is_finite() { uv } else { Vec2::ZERO };
         let uvs: Vec<Vec2> = uvs.map(or_zero).collect();
         let corners = triangles.iter().filter(|_| uvs.len() == n);
