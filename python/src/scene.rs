@@ -111,6 +111,7 @@ type Load = dyn Fn(Option<f32>) -> Result<peelnet::Scene, SceneError> + Send + S
 /// Args:
 ///     path: A scene file (.toml), a mesh (.gltf, .glb, .obj, .ply, .stl), or the name of a shipped scene (see `samples()`).
 ///     time: Time in the scene's timeline; material values are interpolated between its states.
+///     files_from: Folders in which a mesh file may name textures and buffers, beside its own and the scene's.
 ///
 /// What was repaired or left out while loading is in `warnings` and is reported as `UserWarning`.
 #[pyclass(frozen, module = "peelnet")]
@@ -136,9 +137,15 @@ impl Scene {
 #[pymethods]
 impl Scene {
     #[new]
-    #[pyo3(signature = (path, *, time=None))]
-    fn new(py: Python<'_>, path: PathBuf, time: Option<f32>) -> PyResult<Self> {
-        Self::loaded_by(Arc::new(move |time| suite::open(&path, time)), py, time)
+    #[pyo3(signature = (path, *, time=None, files_from=Vec::new()))]
+    fn new(
+        py: Python<'_>,
+        path: PathBuf,
+        time: Option<f32>,
+        files_from: Vec<PathBuf>,
+    ) -> PyResult<Self> {
+        let load = move |time| suite::open_with(&path, time, &files_from);
+        Self::loaded_by(Arc::new(load), py, time)
     }
 
     /// Reads a scene from bytes.

@@ -42,6 +42,8 @@ pub struct Start {
     /// Eye, target and field of view in place of the view's own, see [`crate::camera_numbers`].
     pub camera: Option<Vec<f32>>,
     pub time: Option<f32>,
+    /// Folders in which mesh files may name others, see [`Scene::load_with`].
+    pub files_from: Vec<PathBuf>,
     /// How pictures are compared at first.
     pub compare: Mode,
     /// What the method is compared with; by default the exact one.
@@ -61,6 +63,7 @@ impl Start {
             view: 0,
             camera: None,
             time: None,
+            files_from: Vec::new(),
             compare: Mode::One,
             against: None,
             bare: false,
@@ -98,6 +101,7 @@ pub(crate) struct App {
     pub messages: Messages,
     pub watch: Watch,
     pub recent: Vec<PathBuf>,
+    files_from: Vec<PathBuf>,
     pub panels: State,
     pub size: [u32; 2],
     script: Option<Script>,
@@ -142,6 +146,7 @@ impl App {
             messages: Messages::default(),
             watch: Watch::default(),
             recent,
+            files_from: start.files_from,
             panels: State::new(start.bare),
             size: [0; 2],
             script: start.script,
@@ -153,7 +158,7 @@ impl App {
             page: crate::web::in_page::InPage::default(),
         };
         match start.loaded {
-            Some(scene) => app.take(Stage::of_scene(gpu, source, scene)),
+            Some(scene) => app.take(Stage::of_scene(gpu, app.allowing(source), scene)),
             None => app.open(source, start.time),
         }
         app.show_view(start.view);
@@ -172,7 +177,14 @@ impl App {
 
     /// Replaces the scene; the one that is shown stays where the new one does not open.
     pub fn open(&mut self, source: Source, time: Option<f32>) {
-        self.take(Stage::open(&self.gpu, source, time));
+        self.take(Stage::open(&self.gpu, self.allowing(source), time));
+    }
+
+    fn allowing(&self, source: Source) -> Source {
+        Source {
+            files_from: self.files_from.clone(),
+            ..source
+        }
     }
 
     fn take(&mut self, opened: Fallible<Stage>) {

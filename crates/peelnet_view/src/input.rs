@@ -68,7 +68,10 @@ impl App {
             return;
         };
         let is_network = has_ending(&path, MODEL);
-        let source = Source { path, dropped };
+        let source = Source {
+            dropped,
+            ..Source::named(path)
+        };
         if is_network {
             self.open_network(source);
         } else {

@@ -25,6 +25,8 @@ pub(crate) struct Source {
     pub path: PathBuf,
     /// The files that were dropped onto a page with it.
     pub dropped: Option<Arc<Files>>,
+    /// See [`Scene::load_with`].
+    pub files_from: Vec<PathBuf>,
 }
 
 impl Source {
@@ -32,6 +34,7 @@ impl Source {
         Self {
             path: path.into(),
             dropped: None,
+            files_from: Vec::new(),
         }
     }
 
@@ -66,7 +69,7 @@ impl Source {
 
     fn load(&self, time: Option<f32>) -> Result<Scene, SceneError> {
         let Some(files) = &self.dropped else {
-            return suite::open(&self.path, time);
+            return suite::open_with(&self.path, time, &self.files_from);
         };
         let read = |path: &Path| {
             // What a file names lies beside it: dropped files have no folders.

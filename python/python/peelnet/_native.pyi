@@ -56,7 +56,9 @@ class Camera:
 
 @final
 class Scene:
-    def __new__(cls, path: _Path, *, time: float | None = None) -> Scene: ...
+    def __new__(
+        cls, path: _Path, *, time: float | None = None, files_from: Sequence[_Path] = ()
+    ) -> Scene: ...
     @staticmethod
     def from_bytes(
         name: _Path, data: bytes, *, files: Mapping[str, bytes] | None = None, time: float | None = None

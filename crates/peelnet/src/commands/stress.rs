@@ -16,14 +16,10 @@ pub(super) fn run(context: &Context<'_>, args: &StressArgs) -> Result<(), Failur
         none if none.is_empty() => CASES.iter().collect(),
         cases => cases,
     };
-    let outputs = args.out.iter();
-    let outputs = outputs
-        .map(|out| context.results::<Stressed>(&args.models, out))
-        .next();
-    let _begun = outputs
-        .transpose()?
-        .map(|outputs| context.begin(outputs, &[]))
-        .transpose()?;
+    let _begun = match &args.out {
+        Some(out) => Some(context.begin(context.results::<Stressed>(&args.models, out)?, &[])?),
+        None => None,
+    };
     let gpu = context.gpu()?;
     let own_only = !args.models.is_empty() && args.methods.is_none();
     let all = || {

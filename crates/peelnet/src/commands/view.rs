@@ -52,6 +52,7 @@ pub(super) fn run(context: &Context<'_>, args: &ViewArgs) -> Result<(), Failure>
         compare: args.compare.parse().map_err(Failure::wrong)?,
         against: Some(args.against.clone()),
         time: args.time,
+        files_from: context.global.files_from.clone(),
         bare: args.bare,
         script: is_script.then(|| Script::new(args.frames.unwrap_or(1), args.screenshot.clone())),
         ..Start::new(&args.scene, args.method.clone())

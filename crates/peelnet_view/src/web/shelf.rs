@@ -37,13 +37,13 @@ impl Shelf {
         let kept = kept.as_ref().filter(|(name, _)| *name == path);
         Source {
             dropped: kept.map(|(_, files)| Arc::clone(files)),
-            path,
+            ..Source::named(path)
         }
     }
 
     /// Keeps a dropped scene in place of the last one; whether it was another one.
     pub fn put(&self, source: &Source) -> bool {
-        let Source { path, dropped } = source;
+        let Source { path, dropped, .. } = source;
         let Some(files) = dropped else {
             return false;
         };
