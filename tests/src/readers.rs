@@ -2,12 +2,13 @@
 //! `tests/fuzzed_readers.rs` call the same ones. A reader answers or gives an error; it does not panic, hang, or take memory that the
 //! file does not warrant.
 
+use peelnet_bench::{bench::Bench, report::Results};
 use peelnet_dataset::{Dataset, Format};
 use peelnet_model::Model;
 use peelnet_peel::{ExtractOptions, synthetic::synthetic};
 use peelnet_scene::Scene;
 use std::{
-    fs,
+    fs, io,
     path::{Path, PathBuf},
     sync::{LazyLock, atomic::AtomicBool},
 };
@@ -16,7 +17,7 @@ use tempfile::TempDir;
 /// The name of a fuzz target, what it does with any bytes, and files to begin from: sound ones, and some that are nearly so.
 pub type Reader = (&'static str, fn(&[u8]), fn() -> Vec<Vec<u8>>);
 
-pub const READERS: [Reader; 7] = [
+pub const READERS: [Reader; 9] = [
     (
         "scene",
         |bytes| load("s.toml", bytes),
@@ -28,6 +29,8 @@ pub const READERS: [Reader; 7] = [
     ("gltf", gltf, || committed("gltf")),
     ("ply", |bytes| load("f.ply", bytes), || committed("ply")),
     ("stl", |bytes| load("f.stl", bytes), || committed("stl")),
+    ("texture", texture, texture_seeds),
+    ("results", results, || committed("results")),
 ];
 
 /// The files in `tests/seeds`, each with what its reader knows: polygons and strips, colours, textures, lights, timelines, sparse accessors.
@@ -98,6 +101,48 @@ fn obj(bytes: &[u8]) {
     let mesh = parts.next().unwrap_or_default();
     put("m.mtl", parts.next().unwrap_or_default());
     load("f.obj", mesh);
+}
+
+/// An image that a scene puts on a square.
+fn texture(bytes: &[u8]) {
+    put("texture", bytes);
+    load("textured.toml", TEXTURED.as_bytes());
+}
+
+const TEXTURED: &str = r#"
+[[view]]
+position = [0, 0, 3]
+target = [0, 0, 0]
+up = [0, 1, 0]
+fov_y = 40
+near = 0.1
+far = 10
+
+[[object]]
+mesh = { shape = "quad", size = [1, 1] }
+material = { alpha = 0.5, color_map = "texture" }
+"#;
+
+/// A PNG and a JPEG image.
+fn texture_seeds() -> Vec<Vec<u8>> {
+    let image = image::RgbImage::from_fn(9, 7, |x, y| image::Rgb([20 * x as u8, 30 * y as u8, 99]));
+    let encoded = |format| {
+        let mut bytes = io::Cursor::new(Vec::new());
+        image.write_to(&mut bytes, format).expect("encodes");
+        bytes.into_inner()
+    };
+    [image::ImageFormat::Png, image::ImageFormat::Jpeg]
+        .map(encoded)
+        .to_vec()
+}
+
+/// A `results.json`; what is let through is shown in all of a bench's files.
+fn results(bytes: &[u8]) {
+    if let Ok(results) = Results::<Bench>::read(&put("results.json", bytes)) {
+        results
+            .write(FOLDER.path())
+            .expect("the temporary folder can be written");
+    }
 }
 
 const MANIFEST: &str = "_peelnet/manifest.json";

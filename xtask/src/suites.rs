@@ -99,7 +99,9 @@ pub fn fuzz(seconds: &str) -> Outcome {
     ensure_subcommand("fuzz")?;
     run("cargo run --package peelnet_tests --example write_seeds")?;
     // One for each reader of files that users hand over.
-    for target in ["scene", "obj", "gltf", "ply", "stl", "dataset", "model"] {
+    for target in [
+        "scene", "obj", "gltf", "ply", "stl", "texture", "dataset", "model", "results",
+    ] {
         // Errors of memory, with what finding them takes; then what an input of less than 1 MB may take: 256 MB and a second.
         for (sanitizer, limits) in [
             ("address", "-rss_limit_mb=1024 -timeout=10"),
