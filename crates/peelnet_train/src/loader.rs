@@ -47,6 +47,10 @@ impl TrainingData {
             used: sample.rows_kept()?,
             of: plan.dataset.rows,
         });
+        if data.examples_held() == 0 {
+            let rows = plan.dataset.rows;
+            return Err(TrainError::no_examples(&plan.source, config.recipe, rows));
+        }
         // A split that leaves a subset without examples is dropped: a handful of pixels may all fall on one side. Then the trainer draws
         // examples.
         if lacking(&data, config).is_some() {

@@ -78,8 +78,8 @@ fn held_out_scenes_are_left_out_and_pixels_are_split_whole() {
 
     // Of held-out scenes alone nothing is left.
     let alone = write(&folder.path().join("c"), 3, vec![scene("panes", true)]);
-    let data = TrainingData::from_datasets(&config, &[alone]).unwrap();
-    let text = run(&config, &data, &out).unwrap_err().to_string();
+    let text = TrainingData::from_datasets(&config, &[alone]).unwrap_err();
+    let text = text.to_string();
     assert!(text.contains(": no rows to train on"), "{text}");
 }
 
