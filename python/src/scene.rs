@@ -246,7 +246,7 @@ impl FromFile for Scene {
     const IS: &str = "a scene is a Scene, a path, or the name of a shipped scene";
 
     fn from_file(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
-        Self::new(py, path, None)
+        Self::new(py, path, None, Vec::new())
     }
 }
 
