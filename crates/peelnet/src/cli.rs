@@ -172,7 +172,7 @@ pub struct ExtractArgs {
     /// How to peel: sbuffer, dual or single
     #[arg(long, value_name = "METHOD", default_value = "sbuffer")]
     pub peel: Peel,
-    /// Stop peeling after N passes and report what was left out
+    /// With dual or single: stop peeling after N passes and report what was left out
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub max_passes: Option<u32>,
     /// Fraction of the pixels to keep

@@ -113,6 +113,7 @@ fn advice(error: &(dyn Error + 'static)) -> (bool, Option<String>) {
                     "views" => "set it with --views",
                     "augment" => "lower --augment or --views",
                     "pixels" => "set it with --pixels",
+                    "max_passes" => "leave --max-passes out, or add --peel dual or --peel single",
                     "lists" => "set it with --synthetic",
                     _ => "",
                 };

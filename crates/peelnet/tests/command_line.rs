@@ -89,6 +89,8 @@ const REFUSED: &str = "
     1 | train two.toml --out m | two.toml: is a file, and a dataset is a folder & peelnet extract
     1 | export sound --out w.wgsl | sound: is a folder, and a network is a file & peelnet train
     1 | train edited --out m | edited: the manifest and the plan say different things & peelnet extract
+    2 | inspect sound --time | sound: --time measures a scene's effects
+    2 | inspect two.toml --files-from nowhere | --files-from nowhere: is no folder
     2 | train sound --out m --lr 1e-30 | learning_rate & --lr
     2 | export m.safetensors --out w.hlsl --lang msl | --out w.hlsl: the ending says hlsl, --lang says msl & .metal
     1 | export m.safetensors --out other.glsl | --out other.glsl: the description beside it is that of another network's other.wgsl
@@ -137,7 +139,7 @@ const REFUSED: &str = "
 
     1 | extract orbit.toml --size 16x16 --out shard --shard 2/2 | size is 16x12 & worker test & use the same command
     1 | extract orbit.toml --size 16x12 --out shard --seed 9 --resume | seed is 1 & use the same command
-    1 | extract orbit.toml --size 16x12 --out shard --max-passes 2 --resume | limit of passes is all
+    1 | extract orbit.toml --size 16x12 --out shard --max-passes 2 --resume | no passes to limit & --peel dual
     1 | extract orbit.toml --size 16x12 --out shard --views 1 --resume | list of cameras is
     1 | extract two.toml --size 16x12 --out shard --resume | scene 0 is
     1 | extract orbit.toml --size 16x12 --out shard --format npy --shard 2/2 | format is parquet

@@ -66,8 +66,7 @@ impl<'a> Plan<'a> {
     }
 
     pub fn views_of(&self, scene: &Scene) -> usize {
-        let all = scene.views.len();
-        self.views.map_or(all, |n| n.min(all))
+        self.views.unwrap_or(scene.views.len())
     }
 }
 

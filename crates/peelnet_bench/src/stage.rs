@@ -165,7 +165,7 @@ pub(crate) fn in_turn(
     watch: &mut Watch<'_>,
 ) -> Result<Vec<Vec<Profile>>, EvalError> {
     let mut found = vec![Vec::new(); all.len()];
-    for number in 0..warm_up + frames {
+    for number in 0..warm_up.saturating_add(frames) {
         for ((stage, ready), found) in all.iter_mut().zip(&mut found) {
             watch.check()?;
             let frame = stage.renderer.profile(&mut ready.prepared, camera);

@@ -1,6 +1,6 @@
 //! `_peelnet/manifest.json`: what a dataset is made of and where it comes from. And what its JSON files have in common.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use peelnet_core::files::hex;
 use serde::de::DeserializeOwned;
@@ -194,9 +194,8 @@ impl Manifest {
         if parts != items as usize {
             return Err(format!("{items} work items, but {parts} parts"));
         }
-        let mut names = BTreeSet::new();
         for (k, part) in self.parts.iter().enumerate() {
-            let checked = self.check_part(k, part, &mut names);
+            let checked = self.check_part(k, part);
             checked.map_err(|reason| format!("parts[{k}]: {reason}"))?;
         }
         let rows = self.parts.iter().map(|p| p.rows);
@@ -211,12 +210,7 @@ impl Manifest {
         Ok(())
     }
 
-    fn check_part<'a>(
-        &self,
-        k: usize,
-        part: &'a Part,
-        names: &mut BTreeSet<&'a str>,
-    ) -> Result<(), String> {
+    fn check_part(&self, k: usize, part: &Part) -> Result<(), String> {
         let (index, scene, rows) = (part.index, part.scene, part.rows);
         if index as usize != k {
             return Err(format!("index {index} where {k} is expected"));
@@ -224,24 +218,16 @@ impl Manifest {
         if scene as usize >= self.scenes.len() {
             return Err(format!("scene {scene} is not listed"));
         }
-        let (format, found) = (self.format, part.files.len());
-        let expected = format.files_of_a_part();
-        if found != expected {
+        // Files of other names are those of other parts, or lie elsewhere.
+        let format = self.format;
+        let expected = format.file_names(&part.stem(&self.scenes[scene as usize].name));
+        if !part.files.iter().map(|file| &file.name).eq(&expected) {
+            let expected = expected.join(", ");
             return Err(format!(
-                "{found} files, a part in format {format} has {expected}"
+                "its files are not those of its scene, copy and view: {expected}"
             ));
         }
         for FileEntry { name, bytes, .. } in &part.files {
-            // Names come from outside: they must not lead out of the folder on any system.
-            let leads_out = |c: char| c.is_control() || matches!(c, '/' | '\\' | ':');
-            if !name.starts_with(FRAGMENTS) || name.contains(leads_out) {
-                return Err(format!(
-                    "{name:?} is not a plain file name that begins with {FRAGMENTS}"
-                ));
-            }
-            if !names.insert(name) {
-                return Err(format!("{name:?} is listed twice"));
-            }
             // Of Parquet's compressed rows, only the file itself can say it.
             if *bytes < format.least_row_bytes().saturating_mul(rows) {
                 return Err(format!(

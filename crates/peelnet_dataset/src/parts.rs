@@ -149,8 +149,8 @@ pub(crate) fn whole(store: &dyn Store, plan: &Plan) -> Result<Option<Manifest>, 
         Err(DatasetError::invalid(&store.shown(name), reason))
     };
     if let Some(manifest) = Manifest::read(store)? {
-        if manifest.plan != plan.hash {
-            return wrong(MANIFEST, "the manifest is of another plan than plan.json");
+        if !plan.agrees_with(&manifest) {
+            return wrong(MANIFEST, "the manifest says other things than plan.json");
         }
         check_files(store, &manifest, true)?;
         return Ok(Some(manifest));

@@ -95,6 +95,15 @@ impl Plan {
         plan
     }
 
+    pub(crate) fn agrees_with(&self, m: &Manifest) -> bool {
+        let h = &self.header;
+        let names = (&h.tool_version, &h.peel, h.format, &h.scenes, &h.settings);
+        let numbers = (h.seed, h.pixels_fraction, h.augment, h.work_items);
+        self.hash == m.plan
+            && names == (&m.tool_version, &m.peel, m.format, &m.scenes, &m.settings)
+            && numbers == (m.seed, m.pixels_fraction, m.augment, m.work_items)
+    }
+
     /// Everything that shapes the rows, by name.
     fn fields(&self) -> Vec<(String, String)> {
         let header = &self.header;
@@ -112,7 +121,8 @@ impl Plan {
         ];
         for (k, scene) in header.scenes.iter().enumerate() {
             let held_out = if scene.held_out { ", held out" } else { "" };
-            let value = format!("{} with sha256 {}{held_out}", scene.name, scene.sha256);
+            let (name, hash, content) = (&scene.name, &scene.sha256, &scene.content);
+            let value = format!("{name} with sha256 {hash}, content {content}{held_out}");
             fields.push((format!("scene {k}"), value));
         }
         // Behind the scenes: when these differ, the cameras do as well.

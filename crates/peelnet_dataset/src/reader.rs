@@ -44,10 +44,8 @@ impl Dataset {
                 None => parts::no_manifest(path),
             });
         };
-        if plan
-            .is_some_and(|plan| plan.hash != manifest.plan || plan.header.scenes != manifest.scenes)
-        {
-            let reason = "the manifest and the plan say different things of the scenes, one of them was edited; write the dataset again with `peelnet extract`";
+        if plan.is_some_and(|plan| !plan.agrees_with(&manifest)) {
+            let reason = "the manifest and the plan say different things, one of them was edited; write the dataset again with `peelnet extract`";
             return Err(DatasetError::invalid(path, reason));
         }
         parts::check_files(&*store, &manifest, false)?;

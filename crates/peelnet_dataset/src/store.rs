@@ -220,6 +220,10 @@ pub(crate) fn open_store(path: &Path) -> Result<Arc<dyn Store>, DatasetError> {
             let reason = "is a file, and a dataset is a folder; write one of a scene with `peelnet extract SCENE --out DATASET`";
             return Err(DatasetError::invalid(path, reason));
         }
+        if !folder.exists() {
+            let reason = "there is no such dataset; write one of a scene with `peelnet extract SCENE --out DATASET`";
+            return Err(DatasetError::invalid(path, reason));
+        }
         // The error of the system says what is wrong with it.
         fs::read_dir(folder).map_err(DatasetError::io(folder, "open the dataset's folder"))?;
     }

@@ -58,6 +58,9 @@ impl fmt::Display for Verification {
     }
 }
 
+/// More than rounding moves the transmittance that any useful network answers, by a factor of hundreds.
+const LOOSEST: f64 = 1e-2;
+
 /// The difference that is allowed of an answer: [`EXPORT_F32`] of [`Mlp::magnitude`](peelnet_core::mlp::Mlp::magnitude). A weight `exp(−r s)` may differ as
 /// much as its share may, and by [`EXPORT_F32`] more for the rounding of `r` and of the exponential.
 fn tolerance(model: &Model, raw: &[f64]) -> f64 {
@@ -118,6 +121,12 @@ pub fn verify(gpu: &Gpu, model: &Model, wgsl: &str) -> Result<Verification, Expo
             // Inputs of layers in 16 bits are limited closer: elsewhere an answer need only be one.
             (true, false) => 1.0,
         };
+        let is_loose = model.meta.output.is_fraction() && tolerance > LOOSEST;
+        if !halves && in_training(inputs) && is_loose {
+            return Err(ExportError::Refused(format!(
+                "the weights are so large that rounding alone moves an answer by {tolerance:.1e}; train it again with a lower --lr"
+            )));
+        }
         for (&found, expected) in found.iter().zip(model.shader_output(&raw)) {
             let tolerance = tolerance.max(EXPORT_F32 * expected.abs());
             let difference = (f64::from(found) - expected).abs();

@@ -1,6 +1,9 @@
 //! The model as safetensors bytes, and files of them.
 
-use std::{collections::HashMap, fmt};
+use std::{
+    collections::{HashMap, HashSet},
+    fmt,
+};
 
 use peelnet_core::files::Kind;
 use peelnet_core::mlp::{Activation, Layer, Mlp};
@@ -127,7 +130,8 @@ fn read_layers(tensors: &SafeTensors<'_>) -> Result<Vec<Layer>, Problem> {
     let last = names.iter().filter_map(number).max();
     // More layers than tensors means that some are missing; no need to look for all of them.
     let layers = last.map_or(0, |last| last.min(names.len()) + 1);
-    let is_unknown = |name: &&&str| !(0..layers).any(|i| **name == weight(i) || **name == bias(i));
+    let known: HashSet<String> = (0..layers).flat_map(|i| [weight(i), bias(i)]).collect();
+    let is_unknown = |name: &&&str| !known.contains(**name);
     if let Some(unknown) = names.iter().filter(is_unknown).min() {
         return Err(misnamed(unknown, "belongs to no layer"));
     }
@@ -143,6 +147,10 @@ fn read_layers(tensors: &SafeTensors<'_>) -> Result<Vec<Layer>, Problem> {
             return Err(Problem(format!(
                 "tensor {bias_name:?} is F32 {bias_shape:?}, expected F32 [{outputs}], one for each row of {weight_name}"
             )));
+        }
+        if outputs == 1 && i + 1 < layers {
+            let reason = "has one row, and hidden layers have 2 at least";
+            return Err(Problem(format!("tensor {weight_name:?} {reason}")));
         }
         Ok(Layer {
             outputs,

@@ -14,7 +14,7 @@ pub enum PeelError {
     Gpu(#[from] peelnet_render::gpu::GpuError),
     #[error("{0}")]
     Dataset(#[from] peelnet_dataset::DatasetError),
-    /// A wrong value of what is asked for: `scenes`, `views`, `augment`, `pixels` or `lists`.
+    /// A wrong value of what is asked for: `scenes`, `views`, `augment`, `pixels`, `max_passes` or `lists`.
     #[error("{reason}")]
     Setting {
         setting: &'static str,

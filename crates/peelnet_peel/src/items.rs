@@ -1,6 +1,6 @@
 //! Work items: which views of which scenes are peeled, and in which order they are numbered.
 
-use crate::{ExtractOptions, PeelError};
+use crate::{ExtractOptions, Peel, PeelError};
 use peelnet_dataset::{CameraInfo, MAX_WORK_ITEMS, Part};
 use peelnet_scene::{Camera, Scene};
 
@@ -18,7 +18,7 @@ pub fn shard_items(scenes: &[Scene], options: &ExtractOptions) -> Result<Vec<Par
 /// scenes' own.
 ///
 /// # Errors
-/// No view at all; a scene with fewer views than asked for; two scenes of one name; more items than a dataset can have; a fraction of
+/// A limit of passes where there are none; no view at all; a scene with fewer views than asked for; two scenes of one name; more items than a dataset can have; a fraction of
 /// pixels outside 0 … 1.
 pub fn items(scenes: &[Scene], options: &ExtractOptions) -> Result<Vec<Part>, PeelError> {
     let (pixels, [width, height]) = (options.pixels, options.size);
@@ -26,6 +26,11 @@ pub fn items(scenes: &[Scene], options: &ExtractOptions) -> Result<Vec<Part>, Pe
         let reason =
             format!("{pixels} is not a fraction of the pixels: it must be above 0 and at most 1");
         return Err(PeelError::setting("pixels", reason));
+    }
+    if options.max_passes.is_some() && options.peel == Peel::SBuffer {
+        let reason =
+            "peeling with an s-buffer stores all layers at once, so there are no passes to limit";
+        return Err(PeelError::setting("max_passes", reason));
     }
     let mut all = Vec::new();
     let mut count = 0;

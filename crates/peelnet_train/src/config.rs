@@ -4,6 +4,7 @@ use peelnet_core::mlp::Activation;
 use peelnet_dataset::SplitBy;
 use peelnet_model::{PixelLoss, Recipe};
 use serde::{Deserialize, Serialize};
+use std::ops::Range;
 
 use crate::error::TrainError;
 use crate::network::Shape;
@@ -131,8 +132,10 @@ const MAX_ROWS: u64 = i32::MAX as u64;
 const MAX_PARAMETERS: u64 = 1 << 22;
 
 /// A step of Adam is as long as the learning rate; shorter ones than this vanish in weights of 32 bits.
-const LEAST_LEARNING_RATE: f64 = 1e-8;
-const LEARNING: &str = "give a number of at least 1e-8, below which 32-bit weights hardly change";
+/// Below, 32-bit weights hardly change; above, a step leaves every range of weights that can be learned.
+const LEARNING_RATES: Range<f64> = 1e-8..10.0;
+const LEARNING: &str =
+    "give a number from 1e-8, below which 32-bit weights hardly change, to below 10";
 const POSITIVE: &str = "give a positive number";
 const BELOW_1: &str = "give a number from 0 to below 1";
 const BETWEEN: &str = "give a share between 0 and 1";
@@ -194,8 +197,8 @@ impl Config {
                 return bad(setting, value.to_string(), hint);
             }
         }
-        if let Some(width) = self.hidden.iter().find(|&&w| w == 0 || w > 4096) {
-            return bad("hidden", width.to_string(), "give widths from 1 to 4096");
+        if let Some(width) = self.hidden.iter().find(|w| !(2..=4096).contains(*w)) {
+            return bad("hidden", width.to_string(), "give widths from 2 to 4096");
         }
         let parameters = Shape::new(self).parameters() as u64;
         if parameters > MAX_PARAMETERS {
@@ -211,10 +214,14 @@ impl Config {
             Schedule::Constant => 0.5,
         };
         let positive = f64::from_bits(1)..f64::INFINITY;
-        let learning = LEAST_LEARNING_RATE..f64::INFINITY;
         let between = f64::from_bits(1)..1.0;
         for (setting, value, range, hint) in [
-            ("learning_rate", self.learning_rate, &learning, LEARNING),
+            (
+                "learning_rate",
+                self.learning_rate,
+                &LEARNING_RATES,
+                LEARNING,
+            ),
             ("beta1", self.beta1, &(0.0..1.0), BELOW_1),
             ("beta2", self.beta2, &(0.0..1.0), BELOW_1),
             ("epsilon", self.epsilon, &positive, POSITIVE),

@@ -230,6 +230,24 @@ fn check_contents(datasets: &[Dataset]) -> Result<(), TrainError> {
             )));
         }
     }
+    let mut views = BTreeMap::new();
+    for (dataset, part) in datasets.iter().flat_map(trained_on) {
+        let (content, manifest) = (&scene_entry(dataset, part).content, dataset.manifest());
+        let seed = if part.copy > 0 { manifest.seed } else { 0 };
+        let key = (content, part.copy, seed, part.view, part.width, part.height);
+        if let Some(first) = views
+            .insert(key, dataset.path())
+            .filter(|_| !content.is_empty())
+        {
+            return Err(TrainError::Failed(format!(
+                "{} and {} both hold view {} of scene '{}', whose rows would count twice; extract it once",
+                first.display(),
+                dataset.path().display(),
+                part.view,
+                scene_name(dataset, part)
+            )));
+        }
+    }
     let mut names: BTreeMap<&str, &SceneEntry> = BTreeMap::new();
     let scenes = datasets.iter().flat_map(|d| &d.manifest().scenes);
     for scene in scenes.filter(|scene| !scene.content.is_empty()) {

@@ -314,7 +314,7 @@ impl Run<'_> {
             String::new()
         };
         TrainError::Failed(format!(
-            "training diverged in epoch {}: {what} is not finite; a lower learning rate than {} may help{kept}",
+            "training diverged in epoch {}: {what} is not finite; a lower learning rate than {:?} may help{kept}",
             progress.history.len() + 1,
             self.config.learning_rate
         ))

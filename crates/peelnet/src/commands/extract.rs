@@ -161,8 +161,8 @@ pub(super) fn warn_of_empty(context: &Context<'_>, report: &ExtractReport) {
     let empty: Vec<String> = empty.map(|s| s.name.clone()).collect();
     if m.is_whole() && !empty.is_empty() {
         context.console.warn(format!(
-            "no rows: nothing transparent is seen in {}; look at its materials' alpha and its cameras",
-            few(&empty, 6)
+            "no rows: nothing transparent is seen in {}; look at its materials' alpha and its cameras{}",
+            few(&empty, 6), if m.pixels_fraction < 1.0 { ", or keep more with --pixels" } else { "" }
         ));
     }
 }

@@ -25,6 +25,14 @@ pub(super) fn run(context: &Context<'_>, args: &InspectArgs) -> Result<(), Failu
     let ending = ending.unwrap_or_default().to_lowercase();
     let is_model = ending == "safetensors";
     let ships = path.to_str().and_then(suite::find).is_some();
+    let is_scene = !is_remote(path) && !path.is_dir() && !is_model;
+    if args.time && !is_scene {
+        let text = format!(
+            "{}: --time measures a scene's effects; leave it out",
+            shown(path)
+        );
+        return Err(Failure::wrong(text));
+    }
     if is_remote(path) {
         return if is_model {
             model(context, path)

@@ -212,6 +212,10 @@ pub fn dispatch(cli: &Cli) -> Result<(), Failure> {
         stop: interrupt::install()
             .map_err(|e| Failure::failed(format!("cannot listen to signals: {e}")))?,
     };
+    if let Some(other) = cli.global.files_from.iter().find(|f| !f.is_dir()) {
+        let text = format!("--files-from {}: is no folder", shown(other));
+        return Err(Failure::wrong(text));
+    }
     match &cli.command {
         Command::Run(args) => run::run(&context, args),
         Command::Extract(args) => extract::run(&context, args),

@@ -456,6 +456,10 @@ impl Outputs {
         folder: &Path,
         files: impl IntoIterator<Item = (impl AsRef<Path>, Kind)>,
     ) -> Result<(), Refused> {
+        if is_remote(folder) {
+            let refused = Refused::new(false, "is an address; name a folder of this machine");
+            return Err(refused.about(setting, folder));
+        }
         check_is_folder(setting, folder)?;
         for (name, kind) in files {
             self.file(setting, &folder.join(name), kind)?;

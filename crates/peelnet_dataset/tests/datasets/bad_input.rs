@@ -218,10 +218,9 @@ fn manifests() {
         "fragments-x:stream",
         "manifest.json",
     ] {
-        wrong(CSV, name, &["parts[0]", "plain file name"]);
+        wrong(CSV, name, &["parts[0]", "not those of its scene", CSV]);
     }
-    let other = "fragments-00001-cups-v1.csv";
-    wrong(CSV, other, &["listed twice", "v1.csv"]);
+    wrong(CSV, "fragments-00001-cups-v1.csv", &["parts[0]", CSV]);
     wrong("\"rows\"", "rows", &["not JSON", "line"]);
     // More rows than any file holds.
     for format in Format::ALL {

@@ -68,8 +68,7 @@ impl RawMaterial {
         refuse(has("alpha_mode"), self.first(&["blend"]), ONE_MODE)?;
         refuse(is_metallic, specular, ONE_WORKFLOW)?;
         refuse(is_double, specular, ONE_MAP)?;
-        let metal = self.first(&["metallic_roughness_map"]);
-        refuse(is_phong, metal, ADD_PBR)?;
+        refuse(is_phong, self.first(&METALLIC), ADD_PBR)?;
         refuse(is_phong, specular, ADD_PBR)
     }
 

@@ -36,8 +36,16 @@ fn check_length(bytes: &[u8]) -> Result<(), String> {
     Ok(())
 }
 
-/// The document of a glTF or GLB file, checked, and its binary chunk.
-fn parse(bytes: &[u8]) -> Result<(gltf::Document, Option<Vec<u8>>), String> {
+struct Parsed {
+    document: gltf::Document,
+    /// The binary chunk of a GLB file.
+    blob: Option<Vec<u8>>,
+    /// See [`checks::loses_transforms`].
+    loses_transforms: bool,
+}
+
+/// The document of a glTF or GLB file, checked.
+fn parse(bytes: &[u8]) -> Result<Parsed, String> {
     let bad = |e: &dyn std::fmt::Display| format!("is no glTF 2.0 file: {e}; export it again");
     let glb;
     let (text, blob) = if bytes.starts_with(b"glTF") {
@@ -60,8 +68,10 @@ fn parse(bytes: &[u8]) -> Result<(gltf::Document, Option<Vec<u8>>), String> {
     if let Some(fields) = document.as_object_mut() {
         fields.retain(|name, field| !(field.is_null() && name.starts_with("scene")));
     }
+    checks::list_extensions(&mut document);
     checks::check_version(&document)?;
     checks::check_extensions(&document)?;
+    let loses_transforms = checks::loses_transforms(&document);
     let mut root: Root = serde_json::from_value(document)
         // The text has lines and columns for it.
         .map_err(|e| bad(&Root::from_slice(text).err().unwrap_or(e)))?;
@@ -69,18 +79,24 @@ fn parse(bytes: &[u8]) -> Result<(gltf::Document, Option<Vec<u8>>), String> {
     repair::fault_of(&root).map_or(Ok(()), |e| Err(bad(&e)))?;
     repair::repair(&mut root).map_err(|e| bad(&e))?;
     let document = gltf::Document::from_json_without_validation(root);
-    Ok((document, blob))
+    Ok(Parsed {
+        document,
+        blob,
+        loses_transforms,
+    })
 }
 
 /// Reads a glTF or GLB file and the buffers and images that it names: a part of the mesh for each primitive. All materials say how they are lit.
 pub(super) fn load(path: &Path, files: &mut Files<'_>) -> Result<Imported, SceneError> {
     let fail = |message: String| SceneError::file(path, None, message);
     let bytes = files.read(path, MAX_MESH)?;
-    let (document, blob) = parse(&bytes).map_err(&fail)?;
+    let parsed = parse(&bytes).map_err(&fail)?;
+    let (document, blob) = (parsed.document, parsed.blob);
     drop(bytes);
     let mut reader = Reader::new(path, files);
     let read = reader.read_buffers(&document, blob);
     read.map_err(|e| fail(format!("its buffer {e}; keep the .bin files beside it")))?;
+    reader.check_zeros(&document).map_err(&fail)?;
     let scene = document
         .default_scene()
         .or_else(|| document.scenes().next())
@@ -93,6 +109,10 @@ pub(super) fn load(path: &Path, files: &mut Files<'_>) -> Result<Imported, Scene
     reader.scene(&scene)?;
     if document.animations().len() > 0 {
         reader.missing("animations (the first pose is drawn)", "", "");
+    }
+    if parsed.loses_transforms {
+        let what = "texture transforms of normal and occlusion maps (the first map's is used)";
+        reader.missing(what, "", "");
     }
     if document.skins().len() > 0 {
         reader.missing("skins (the bind pose is drawn)", "", "");

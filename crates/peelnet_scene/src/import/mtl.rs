@@ -150,12 +150,11 @@ fn check(path: &Path, text: &str, warnings: &mut Warnings) -> Result<String, Sce
             _ if drawn_as(key).is_some() && rest.is_empty() => {
                 warnings.add(format!("{}: {key} names no file", shown(path)));
             }
-            _ if drawn_as(key).is_none()
-                && (key.starts_with("map_") || matches!(key, "decal" | "refl")) =>
-            {
-                warnings.about(not_drawn.as_str(), &printable(key), "");
-            }
-            _ => out += line,
+            // A filter that lets everything through.
+            "Tf" if rest.split_whitespace().all(|word| word.parse() == Ok(1.0)) => {}
+            "" | "newmtl" | "Pr" | "Pm" => out += line,
+            _ if drawn_as(key).is_some() => out += line,
+            _ => warnings.about(not_drawn.as_str(), &printable(key), ""),
         }
         out.push('\n');
     }

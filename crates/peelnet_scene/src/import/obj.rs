@@ -36,6 +36,11 @@ pub(super) fn load(path: &Path, files: &mut Files<'_>) -> Result<Imported, Scene
     }
     let named = text.lines().filter_map(|line| line.strip_prefix("usemtl "));
     let materials = libraries.finish(named);
+    let mut colors = models.iter().flat_map(|m| &m.mesh.vertex_color);
+    if colors.any(|c| *c > 1.0) {
+        let message = "vertex colours above 1 are taken as 1; divide those of bytes by 255";
+        files.warn(path, message);
+    }
     let mut triangulator = Triangulator::default();
     let parts = models.into_iter().map(|tobj::Model { name, mesh }| {
         let material = mesh.material_id.map(|i| materials[i].clone());
@@ -102,7 +107,8 @@ pub(super) fn statements(
 }
 
 /// Refuses, with its line, what `tobj` would misread or panic on, and reads the libraries. The text that is left: vertices first, as a face can
-/// name any of them, then faces with numbers from 1, names and materials. Lines and points, which `tobj` takes for faces, are no part of it.
+/// name any of them, then faces with numbers from 1, names and materials. Lines and points, which `tobj` takes for faces, are no part of it; a
+/// warning names them.
 fn check(path: &Path, text: &str, libraries: &mut Libraries<'_, '_>) -> Result<String, SceneError> {
     let fault = |number, line: &str, what: &str| {
         let message = format!("'{}' {what}", printable(line));
@@ -149,9 +155,16 @@ fn check(path: &Path, text: &str, libraries: &mut Libraries<'_, '_>) -> Result<S
             // tobj refuses a material without a name.
             "usemtl" if rest.is_empty() => out += "usemtl unnamed",
             "o" | "g" | "mtllib" | "usemtl" => out += line,
+            // Smoothing: normals that a file lacks are computed.
+            "" | "s" => continue,
             _ => {
-                if let Some(list) = list(key) {
-                    read[list] += 1;
+                match list(key) {
+                    Some(list) => read[list] += 1,
+                    None => libraries.files.warnings.about(
+                        format!("{}: not drawn: ", shown(path)),
+                        &printable(key),
+                        "",
+                    ),
                 }
                 continue;
             }

@@ -4,11 +4,11 @@
 //! file cannot hold, and numbers of text that its grammar refuses, such as `.5` and `1.`, are written in another way.
 
 use super::{
-    ply_elements::{Face, INDICES, RED, Skipped, U, Vertex},
+    ply_elements::{ALPHA, BLUE, Face, GREEN, INDICES, RED, Skipped, U, Vertex},
     polygons::{Triangulator, strip},
     surface::{Fault, fault_of, in_file},
 };
-use crate::{budget::Budget, files::Files, mesh::Mesh};
+use crate::{budget::Budget, error::shown, files::Files, mesh::Mesh};
 use glam::{DVec3, Vec2, Vec3};
 use peelnet_core::files::{counted, printable};
 use ply_rs_bw::{
@@ -54,6 +54,18 @@ pub(super) fn read(path: &Path, bytes: &[u8], files: &mut Files<'_>) -> Result<M
     if header.comments.iter().any(is_texture) {
         let message = "not drawn: its texture; name it as color_map in a scene file";
         files.warn(path, message);
+    }
+    for element in header.elements.values() {
+        let is_read = |name: &str| match element.name.as_str() {
+            "vertex" => Vertex::reads(name),
+            "face" | "tristrips" => Face::reads(name),
+            _ => false,
+        };
+        for name in element.properties.keys().filter(|name| !is_read(name)) {
+            let name = printable(&format!("{name} of {}", element.name)).into_owned();
+            let before = format!("{}: not drawn: ", shown(path));
+            files.warnings.about(before, &name, "");
+        }
     }
     let mut reader = Faces {
         surface: Mesh::default(),
@@ -207,7 +219,13 @@ impl Faces<'_> {
             let normals = vertices.iter().map(|v| v.normal.into());
             self.surface.normals = normals.collect();
         }
-        if has(&RED) {
+        let channels = [&RED[..], &GREEN, &BLUE].map(has);
+        if channels.contains(&true) && channels.contains(&false) {
+            let message =
+                "its vertices have some of red, green and blue; export the mesh again with all";
+            return Err(in_file(message));
+        }
+        if channels[0] || has(&ALPHA) {
             self.surface.colors = vertices.iter().map(|v| v.color).collect();
         }
         if has(&U) {

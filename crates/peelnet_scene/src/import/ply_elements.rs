@@ -1,8 +1,11 @@
 use peelnet_core::srgb;
 use ply_rs_bw::ply::{Property, PropertyAccess, PropertyAccessResult as Answer};
 
-/// Names of the red of a vertex, as programs write it.
+/// Names of the channels of a vertex's colour, as programs write them.
 pub(super) const RED: [&str; 3] = ["red", "r", "diffuse_red"];
+pub(super) const GREEN: [&str; 3] = ["green", "g", "diffuse_green"];
+pub(super) const BLUE: [&str; 3] = ["blue", "b", "diffuse_blue"];
+pub(super) const ALPHA: [&str; 3] = ["alpha", "a", "diffuse_alpha"];
 
 /// Names of a texture coordinate of a vertex.
 pub(super) const U: [&str; 4] = ["s", "u", "texture_u", "texture_s"];
@@ -17,6 +20,16 @@ pub(super) struct Vertex {
     /// Linear RGB and alpha.
     pub color: [f32; 4],
     pub uv: [f32; 2],
+}
+
+impl Vertex {
+    /// Whether a property of this name becomes part of it.
+    pub fn reads(name: &str) -> bool {
+        matches!(
+            Self::new().set_property(name, Property::Float(0.0)),
+            Answer::Set
+        )
+    }
 }
 
 impl PropertyAccess for Vertex {
@@ -34,16 +47,16 @@ impl PropertyAccess for Vertex {
             return Answer::Ignored;
         };
         match name {
+            _ if RED.contains(&name) => self.color[0] = linear(&value, x),
+            _ if GREEN.contains(&name) => self.color[1] = linear(&value, x),
+            _ if BLUE.contains(&name) => self.color[2] = linear(&value, x),
+            _ if ALPHA.contains(&name) => self.color[3] = share(&value, x),
             "x" => self.position[0] = x,
             "y" => self.position[1] = x,
             "z" => self.position[2] = x,
             "nx" => self.normal[0] = x,
             "ny" => self.normal[1] = x,
             "nz" => self.normal[2] = x,
-            "red" | "r" | "diffuse_red" => self.color[0] = linear(&value, x),
-            "green" | "g" | "diffuse_green" => self.color[1] = linear(&value, x),
-            "blue" | "b" | "diffuse_blue" => self.color[2] = linear(&value, x),
-            "alpha" | "a" | "diffuse_alpha" => self.color[3] = share(&value, x),
             "s" | "u" | "texture_u" | "texture_s" => self.uv[0] = x,
             "t" | "v" | "texture_v" | "texture_t" => self.uv[1] = x,
             _ => return Answer::Ignored,
@@ -82,6 +95,13 @@ pub(super) struct Face {
     pub indices: Vec<i64>,
     /// Two for each vertex, or none.
     pub uvs: Vec<f32>,
+}
+
+impl Face {
+    /// Whether a property of this name becomes part of it.
+    pub fn reads(name: &str) -> bool {
+        name == "texcoord" || INDICES.contains(&name)
+    }
 }
 
 impl PropertyAccess for Face {

@@ -252,6 +252,29 @@ fn what_is_not_drawn_is_reported() {
     let words = "image 0, which 'a.png' cannot be read & image 1, which is neither & KHR_materials_clearcoat & Lines & spot lights & \
         scenes other than number 0 of 2";
     assert_says(&warnings, words);
+    let document = changed(
+        "textures = [{}] ; materials/0/normalTexture = {\"index\": 0, \"extensions\": {\"KHR_texture_transform\": {\"offset\": [0.5, 0]}}} ; \
+         materials/0/pbrMetallicRoughness/baseColorFactor = [5, -1, 1, 0.5] ; nodes/0/extensions = {\"FOO_bar\": {}}",
+    );
+    let warnings = load(&document).unwrap().warnings.join("\n");
+    let words = "a texture without an image & texture transforms of normal & extensions: FOO_bar & numbers outside of their range";
+    assert_says(&warnings, words);
+}
+
+/// A rotation of any length turns, and does nothing else.
+#[test]
+fn rotations_are_normalized() {
+    let turned = |rotation: &str| {
+        let document = changed(&format!(
+            "nodes/0 = {{\"mesh\": 0, \"rotation\": {rotation}}}"
+        ));
+        load(&document).unwrap().objects[0].mesh.positions.clone()
+    };
+    let (long, unit) = (turned("[0, 0, 3, 4]"), turned("[0, 0, 0.6, 0.8]"));
+    assert!(
+        long.iter().zip(&unit).all(|(a, b)| a.abs_diff_eq(*b, 1e-6)),
+        "{long:?} {unit:?}"
+    );
 }
 
 /// Changes of the document, and words of the error: what is wrong, its place and a fix. The `gltf` crate takes much of this for granted. Most

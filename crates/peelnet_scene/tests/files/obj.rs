@@ -36,8 +36,18 @@ fn what_exporters_write() {
     let (m, warnings, _) = load(obj, "newmtl brass\nKd 1 0 0 # red\nmap_Kd brass.png\n");
     assert_eq!((m.triangles.len(), area(&m)), (4, 3.0));
     assert_eq!(m.parts[0].material.color, [1.0, 0.0, 0.0]);
-    assert_eq!(warnings.len(), 1, "{warnings:?}");
-    assert!(warnings[0].contains("brass.png"), "{warnings:?}");
+    assert_says(&warnings.join("\n"), "brass.png & not drawn: l, p");
+    // What an exporter writes for nothing is no warning; what changes the picture is.
+    let obj = format!(
+        "mtllib a.mtl\nusemtl a\n{}f 1 2 3\n",
+        QUAD.replace("0 0 0\n", "0 0 0 255 0 0\n")
+    );
+    let obj = ["1 0 0", "1 1 0", "0 1 0"].iter().fold(obj, |obj, v| {
+        obj.replace(&format!("v {v}\n"), &format!("v {v} 1 1 1\n"))
+    });
+    let (_, warnings, _) = load(&obj, "newmtl a\nTf 0.1 1 1\nnewmtl b\nTf 1 1 1\nKdd 3\n");
+    assert_eq!(warnings.len(), 2, "{warnings:?}");
+    assert_says(&warnings.join("\n"), "not drawn: Tf, Kdd & colours above 1");
 }
 
 /// Lines of a library, where ` ; ` ends one, and the error; the same of what follows the vertices of a square.

@@ -124,6 +124,28 @@ fn triangle_strips() {
     assert_eq!((m.triangles.len(), area(&m)), (3, 1.5));
 }
 
+/// Opacity without colours is kept; what is not drawn is named; a colour has three channels.
+#[test]
+fn properties_that_few_files_have() {
+    let with = |property: &str| {
+        let lines = format!(
+            "element vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty {property}\n\
+             element face 1\nproperty list uchar int vertex_indices\nproperty uchar red\n"
+        );
+        let body = "0 0 0 51\n1 0 0 51\n0 1 0 51\n3 0 1 2 9\n";
+        load_mesh(&[("a.ply", (header("ascii", &lines) + body).as_bytes())])
+    };
+    let (m, warnings, _) = with("uchar alpha").unwrap();
+    assert_eq!(m.colors, [[1.0, 1.0, 1.0, 0.2]; 3]);
+    assert_says(&warnings.join("\n"), "not drawn: red of face");
+    let (_, warnings, _) = with("float confidence").unwrap();
+    assert_says(
+        &warnings.join("\n"),
+        "not drawn: confidence of vertex, red of face",
+    );
+    assert_refused(with("uchar red"), "some of red, green and blue");
+}
+
 /// Split vertices keep one normal; triangles without area and faces of two vertices are left out, and counted.
 #[test]
 fn seams_and_degenerate_faces() {

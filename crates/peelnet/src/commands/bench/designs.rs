@@ -10,7 +10,7 @@ use peelnet_bench::designs::{
     self, ANCHORED, DESIGNS, Designs, Entry, KBUFFER, MOMENTS, Measured, Reference, Row, Score,
 };
 use peelnet_core::files::{Unfinished, printable, shown};
-use peelnet_dataset::{Dataset, SplitBy, Subset};
+use peelnet_dataset::{Dataset, SceneEntry, SplitBy, Subset};
 use peelnet_model::{Model, Recipe};
 use peelnet_scene::Scene;
 use peelnet_train::{Config, End, RunOptions, TrainingData, train};
@@ -121,8 +121,11 @@ fn check_scenes(
     for dataset in datasets {
         let manifest = dataset.manifest();
         for part in manifest.parts.iter().filter(|p| !dataset.is_held_out(p)) {
-            let name = &manifest.scenes[part.scene as usize].name;
-            if scenes.iter().any(|scene| scene.name == *name) {
+            let SceneEntry { name, content, .. } = &manifest.scenes[part.scene as usize];
+            let is_same = |scene: &Scene| {
+                scene.name == *name || (!content.is_empty() && scene.content == *content)
+            };
+            if scenes.iter().any(is_same) {
                 return Err(Failure::wrong(format!(
                     "{}: the dataset holds scene '{}', which would judge what was trained on it; extract a dataset without it, or name \
                      another scene",

@@ -65,6 +65,20 @@ impl Reader<'_, '_> {
         }
         Ok(())
     }
+
+    /// Zeros, and what a sparse accessor has in place of some of them, lie in no bytes that say how many there can be.
+    pub fn check_zeros(&self, document: &gltf::Document) -> Result<(), String> {
+        let held: usize = self.buffers.iter().map(|bytes| bytes.len()).sum();
+        let mut zeros = document.accessors().filter(|a| a.view().is_none());
+        match zeros.find(|a| a.count() > held) {
+            None => Ok(()),
+            Some(accessor) => Err(format!(
+                "accessor {} has {} values without bytes, and all buffers {held} bytes; export it again",
+                accessor.index(),
+                accessor.count()
+            )),
+        }
+    }
 }
 
 /// The bytes of a data URI, behind its scheme.

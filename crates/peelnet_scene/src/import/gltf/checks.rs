@@ -17,6 +17,7 @@ use gltf::{
 };
 use peelnet_core::files::printable;
 use serde_json::Value;
+use std::collections::BTreeSet;
 
 /// Checks that the file is of glTF 2, and needs nothing newer than 2.0 of its reader.
 pub(super) fn check_version(document: &Value) -> Result<(), String> {
@@ -34,6 +35,53 @@ pub(super) fn check_version(document: &Value) -> Result<(), String> {
             _ => printable(version),
         }
     ))
+}
+
+/// Whether a normal or an occlusion map has a texture transform other than the first map's. The crate does not return it.
+pub(super) fn loses_transforms(document: &Value) -> bool {
+    const TRANSFORM: &str = "/extensions/KHR_texture_transform";
+    let materials = document["materials"].as_array();
+    materials.into_iter().flatten().any(|m| {
+        let of = |map: &str| m.pointer(map).map(|map| map.pointer(TRANSFORM));
+        let first = [
+            "/pbrMetallicRoughness/baseColorTexture",
+            "/pbrMetallicRoughness/metallicRoughnessTexture",
+            "/emissiveTexture",
+        ];
+        let first = first.into_iter().find_map(of).flatten();
+        ["/normalTexture", "/occlusionTexture"]
+            .into_iter()
+            .filter_map(of)
+            .any(|own| own != first)
+    })
+}
+
+/// Adds extensions that the file uses and does not list as used.
+pub(super) fn list_extensions(document: &mut Value) {
+    fn find(value: &Value, names: &mut BTreeSet<String>) {
+        match value {
+            Value::Array(values) => values.iter().for_each(|value| find(value, names)),
+            Value::Object(fields) => {
+                let extensions = fields.get("extensions").and_then(Value::as_object);
+                names.extend(extensions.into_iter().flat_map(|e| e.keys().cloned()));
+                let others = fields.iter().filter(|(name, _)| *name != "extras");
+                others.for_each(|(_, value)| find(value, names));
+            }
+            _ => {}
+        }
+    }
+    let mut names = BTreeSet::new();
+    find(document, &mut names);
+    let Some(fields) = document.as_object_mut() else {
+        return;
+    };
+    let used = fields
+        .entry("extensionsUsed")
+        .or_insert_with(|| Value::Array(Vec::new()));
+    if let Some(used) = used.as_array_mut() {
+        names.retain(|name| !used.iter().any(|known| known == name));
+        used.extend(names.into_iter().map(Value::String));
+    }
 }
 
 /// Checks that the file needs no extension that the crate does not know: it would look for elements that such an extension leaves out.

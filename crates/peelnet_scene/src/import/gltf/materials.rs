@@ -2,6 +2,7 @@
 
 use super::nodes::{Reader, finite};
 use crate::{
+    error::shown,
     files::MAX_IMAGE,
     material::{Lighting, Material},
     specular_glossiness::{Values, convert},
@@ -137,7 +138,12 @@ impl Reader<'_, '_> {
                 self.missing(what, "", "");
                 return None;
             }
-            self.image(&texture.source(), opaque)
+            // Of an extension that is not read, such as another format of images.
+            let Some(image) = texture.source() else {
+                self.missing("a texture without an image", "", "");
+                return None;
+            };
+            self.image(&image, opaque)
         });
         let repeat = (WrappingMode::Repeat, WrappingMode::Repeat, None);
         let (wrap_s, wrap_t, filter) = samplers.first().copied().unwrap_or(repeat);
@@ -200,13 +206,19 @@ impl Reader<'_, '_> {
             AlphaMode::Mask => (a, false, Some(m.alpha_cutoff().unwrap_or(0.5))),
             AlphaMode::Blend => (a, true, None),
         };
+        let mut is_beyond = false;
+        let mut within = |x: f32, high: f32| {
+            let value = finite(x, 0.0, high);
+            is_beyond |= value != x;
+            value
+        };
         let mut material = Material {
             name: m.name().unwrap_or("unnamed").to_owned(),
-            color: [r, g, b].map(|c| finite(c, 0.0, 1.0)),
-            alpha: finite(alpha, 0.0, 1.0),
-            metallic: finite(pbr.metallic_factor(), 0.0, 1.0),
-            roughness: finite(pbr.roughness_factor(), 0.0, 1.0),
-            emission: m.emissive_factor().map(|c| finite(c * strength, 0.0, 1e6)),
+            color: [r, g, b].map(|c| within(c, 1.0)),
+            alpha: within(alpha, 1.0),
+            metallic: within(pbr.metallic_factor(), 1.0),
+            roughness: within(pbr.roughness_factor(), 1.0),
+            emission: m.emissive_factor().map(|c| within(c * strength, 1e6)),
             maps,
             alpha_cutoff: alpha_cutoff.map(|c| finite(c, 0.0, 1.0)),
             double_sided: m.double_sided(),
@@ -221,9 +233,15 @@ impl Reader<'_, '_> {
             if t.transmission_texture().is_some() {
                 self.missing("transmission maps (the factor alone is drawn)", "", "");
             }
-            let passing = finite(t.transmission_factor(), 0.0, 1.0);
+            let passing = within(t.transmission_factor(), 1.0);
             material.transmission = material.color.map(|c| c * passing);
             material.color = material.color.map(|c| c * (1.0 - passing));
+        }
+        if is_beyond {
+            let text = "numbers outside of their range are taken as the nearest in it: ";
+            let before = format!("{}: {text}", shown(self.path));
+            let name = printable(&material.name);
+            self.files.warnings.about(before, &name, "");
         }
         (material, placement)
     }

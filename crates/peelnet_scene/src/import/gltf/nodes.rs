@@ -9,8 +9,8 @@ use crate::{
     scene::{Light, Source},
     texture::Texture,
 };
-use glam::{Mat4, Vec3};
-use gltf::{Semantic, camera::Projection, khr_lights_punctual::Kind, mesh::Mode};
+use glam::{Mat4, Quat, Vec3};
+use gltf::{Semantic, camera::Projection, khr_lights_punctual::Kind, mesh::Mode, scene::Transform};
 use std::{collections::HashMap, path::Path, sync::Arc};
 
 /// Reads the nodes of a file: meshes, lights and cameras.
@@ -121,7 +121,15 @@ impl<'a, 'f> Reader<'a, 'f> {
                     name(parent)
                 )));
             }
-            let world = place * Mat4::from_cols_array_2d(&node.transform().matrix());
+            let mut transform = node.transform();
+            if let Transform::Decomposed { rotation, .. } = &mut transform {
+                // Of another length it would skew and scale.
+                let turn = Quat::from_array(*rotation);
+                if !turn.is_normalized() {
+                    *rotation = turn.normalize().to_array();
+                }
+            }
+            let world = place * Mat4::from_cols_array_2d(&transform.matrix());
             if !world.is_finite() {
                 let message = "its transform is not finite; repair it";
                 return Err(self.fail(format!("node {number}: {message}")));

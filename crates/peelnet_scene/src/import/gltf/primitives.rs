@@ -8,7 +8,7 @@ use crate::{
     mesh::{Mesh, smooth_normals},
 };
 use glam::{Mat3, Mat4, Vec2, Vec3};
-use gltf::{material::AlphaMode, mesh::Mode};
+use gltf::{Semantic, material::AlphaMode, mesh::Mode};
 
 impl Reader<'_, '_> {
     /// Adds a primitive of a mesh in its place in the world.
@@ -30,6 +30,13 @@ impl Reader<'_, '_> {
         let (material, placement) = self.material(&primitive.material());
         if primitive.morph_targets().len() > 0 {
             self.missing("morph targets", "", "");
+        }
+        let vertices = primitive.get(&Semantic::Positions).map(|a| a.count());
+        for (semantic, accessor) in primitive.attributes() {
+            if Some(accessor.count()) != vertices {
+                let what = "attributes of another count than the positions: ";
+                self.missing(what, &semantic.to_string(), "");
+            }
         }
         let fail = |message: String| self.fail(format!("{place}{message}"));
         check_accessors(primitive).map_err(fail)?;
