@@ -194,6 +194,10 @@ pub fn replaces(folder: &Path, join: bool) -> Result<bool, DatasetError> {
 /// Prepares a folder for a writer: removes what writers that died left in it. Returns whether there is an older dataset that a writer of a
 /// whole one is going to replace; one that joins replaces nothing. A foreign file is an error, and for a whole dataset a living writer.
 pub(crate) fn prepare(folder: &Path, joins: bool) -> Result<bool, DatasetError> {
+    let mut metas = [META, PARTS].into_iter();
+    if let Some(link) = metas.find(|meta| folder.join(meta).is_symlink()) {
+        return Err(not_ours(folder, link, None));
+    }
     let any_alive = remove_abandoned(folder)?;
     if !joins {
         return match any_alive {
@@ -244,6 +248,10 @@ pub(crate) fn remove_abandoned(folder: &Path) -> Result<bool, DatasetError> {
     let mut any_alive = false;
     for name in hidden_names(folder)? {
         let hidden = folder.join(META).join(&name);
+        if hidden.is_symlink() {
+            let reason = "is a link, which no writer makes; remove it";
+            return Err(DatasetError::invalid(&hidden, reason));
+        }
         if hidden.is_file() {
             // A writer was killed while it created this one; another one may have removed it.
             if !is_younger(&hidden, ABANDONED_AFTER) {

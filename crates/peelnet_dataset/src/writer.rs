@@ -3,7 +3,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError, RwLockReadGuard};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use rayon::prelude::*;
 
@@ -177,7 +177,7 @@ impl DatasetWriter {
     }
 
     /// While it lives, a process that ends waits; but not for a network.
-    fn moving(&self) -> Option<RwLockReadGuard<'static, ()>> {
+    fn moving(&self) -> Option<peelnet_core::files::Moving> {
         self.store.folder().map(|_| peelnet_core::files::moving())
     }
 

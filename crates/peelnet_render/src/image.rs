@@ -44,12 +44,18 @@ impl ImageFormat {
             },
             Self::Exr => Kind {
                 name: "an EXR image of peelnet",
-                is: |head| head.starts_with(b"\x76\x2f\x31\x01") && is_marked(head),
+                is: |head| {
+                    head.starts_with(b"\x76\x2f\x31\x01")
+                        && is_marked(head, b"software\0string\0\x07\0\0\0peelnet")
+                },
             },
             Self::Npy => Kind {
                 name: "an NPY image of peelnet",
                 is: |head| {
-                    head.starts_with(b"\x93NUMPY\x01\0") && head.get(8..10) == Some(&NPY_HEADER)
+                    let pixels = b"{'descr': '<f4', 'fortran_order': False, 'shape': (";
+                    head.starts_with(b"\x93NUMPY\x01\0")
+                        && head.get(8..10) == Some(&NPY_HEADER)
+                        && head[10..].starts_with(pixels)
                 },
             },
         }
@@ -63,12 +69,12 @@ const SOFTWARE: [&str; 2] = ["Software", "peelnet"];
 const NPY_HEADER: [u8; 2] = 502_u16.to_le_bytes();
 
 fn is_our_png(head: &[u8]) -> bool {
-    head.starts_with(b"\x89PNG\r\n\x1a\n") && is_marked(head)
+    head.starts_with(b"\x89PNG\r\n\x1a\n") && is_marked(head, b"tEXtSoftware\0peelnet")
 }
 
-/// Whether a file says before its pixels that peelnet wrote it.
-fn is_marked(head: &[u8]) -> bool {
-    let mark = SOFTWARE[1].as_bytes();
+/// Whether a file says before its pixels, in its format's own field, that peelnet wrote it. Programs write paths into others, which may hold
+/// the word.
+fn is_marked(head: &[u8], mark: &[u8]) -> bool {
     let mut words = head[..head.len().min(1024)].windows(mark.len());
     words.any(|word| word == mark)
 }

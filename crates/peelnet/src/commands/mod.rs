@@ -60,7 +60,20 @@ impl Context<'_> {
         out: &Path,
     ) -> Result<Outputs, Failure> {
         let mut outputs = self.outputs(inputs);
-        let files = Results::<T>::files().into_iter();
+        let own = Results::<T>::files();
+        // What only one of those that write a report.html writes. A model of a run must not lie beside the report of another command.
+        let is_run = own.contains(&"results.json") && !own.contains(&"results.csv");
+        let run = (!is_run).then_some("dataset-summary.json");
+        let marks = ["results.csv", "effects.json", "path.json"].into_iter();
+        let is_other = |mark: &&str| !own.contains(mark) && out.join(mark).exists();
+        let mut marks = marks.chain(run).filter(|_| own.contains(&"report.html"));
+        if let Some(mark) = marks.find(is_other).filter(|_| !self.global.force) {
+            return Err(Failure::failed(format!(
+                "--out {}: {mark} in it is of another command, whose report.html would be replaced; choose another folder, or replace it with --force",
+                shown(out)
+            )));
+        }
+        let files = own.into_iter();
         outputs.folder("--out", out, files.map(|name| (name, kind_of(name))))?;
         let images = out.join("images");
         outputs.files_like("--out", &images, "png", ImageFormat::Png.kind())?;

@@ -95,6 +95,10 @@ pub(super) fn run(context: &Context<'_>, args: &RunArgs) -> Result<(), Failure> 
     };
     let share = run.count()?;
     let (dataset, summary) = run.extract(share)?;
+    // The dataset and the model are new from now on: what is reported of older ones must not stay beside them if this run ends early.
+    for name in Results::<ThesisRun>::files() {
+        let _ = std::fs::remove_file(args.out.join(name));
+    }
     let (outcome, loss) = run.train(&dataset)?;
     let learned = run.export(&outcome.model)?;
     let showcase = run.showcase(&learned)?;

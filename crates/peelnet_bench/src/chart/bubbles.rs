@@ -1,7 +1,7 @@
 //! Error against time on logarithmic axes, with the Pareto front drawn through it.
 
 use crate::{
-    chart::{Area, SIZE, Svg, name, range, width},
+    chart::{Area, DRAWN, SIZE, Svg, name, range, width},
     front::{BASE, EXACT_MSE, Point},
 };
 use maud::{Markup, html};
@@ -18,8 +18,10 @@ fn title(p: &Point) -> String {
     format!("{method}: {error}, {time:.2} x hardware blending, {bytes} bytes a pixel")
 }
 
-/// A bubble for each method, as large as its bytes per pixel; they come by time.
+/// A bubble for each method, as large as its bytes per pixel; they come by time. Those outside of [`DRAWN`] are left out.
 pub fn bubble_chart(points: &[Point]) -> Svg {
+    let is_shown = |p: &&Point| DRAWN.contains(&p.time) && DRAWN.contains(&p.error);
+    let points: &[Point] = &points.iter().filter(is_shown).cloned().collect::<Vec<_>>();
     let (left, right) = range(points.iter().map(|p| p.time));
     let (low, high) = range(points.iter().map(|p| p.error));
     let x = match points.iter().any(|p| p.method == BASE) {
@@ -136,6 +138,14 @@ mod tests {
         assert_eq!(text.matches("<circle class=\"point\"").count(), 3);
         assert!(text.contains("<title>a&lt;b: MSE 1.00e-4, 2.00 x ") && text.contains("exact"));
         assert!(!text.contains("a<b") && text.trim_end().ends_with("</svg>"));
+        // What no axis can show is left out: labels of such axes would have no end.
+        let svg = bubble_chart(&[
+            point("huge", 1e-300, 1e308, true),
+            point("infinite", f64::INFINITY, f64::NAN, false),
+            point("wide", 1e-30, 1e30, false),
+            point("plain", 1.0, 1e-10, true),
+        ]);
+        assert_eq!(svg.as_str().matches("<circle class=\"point\"").count(), 2);
         // Nothing to draw is no failure.
         assert!(bubble_chart(&[]).as_str().contains("<svg"));
     }

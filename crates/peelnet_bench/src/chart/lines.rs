@@ -1,6 +1,6 @@
 //! Line charts: a line for each name, the name at its end.
 
-use crate::chart::{Area, Drawn, NAME_HEIGHT, Svg, name, range};
+use crate::chart::{Area, DRAWN, Drawn, NAME_HEIGHT, Svg, name, range};
 use maud::html;
 use plotters::{
     coord::{
@@ -32,10 +32,15 @@ pub enum Scale {
     Logarithmic,
 }
 
-/// Lines over a logarithmic y axis, with the titles of both axes. Values that are not positive are left out where an axis is logarithmic.
+/// Lines over a logarithmic y axis, with the titles of both axes. Values outside of [`DRAWN`] are left out where an axis is logarithmic.
 pub fn line_chart(lines: &[Line], x: &str, y: &str, x_scale: Scale) -> Svg {
-    let is_shown =
-        |&(x, y): &(f64, f64)| y > 0.0 && y.is_finite() && (x_scale == Scale::Linear || x > 0.0);
+    let is_shown = |&(x, y): &(f64, f64)| {
+        let has_x = match x_scale {
+            Scale::Linear => x.abs() <= *DRAWN.end(),
+            Scale::Logarithmic => DRAWN.contains(&x),
+        };
+        has_x && DRAWN.contains(&y)
+    };
     let shown = lines.iter().map(|line| {
         let points = line.points.iter().copied().filter(is_shown);
         Line::new(&line.name, points)

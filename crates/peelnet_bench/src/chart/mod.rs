@@ -18,9 +18,13 @@ pub use lines::{Line, Scale, line_chart};
 
 use maud::{Markup, html};
 use plotters::prelude::*;
+use std::ops::RangeInclusive;
 
 /// Width and height of every chart, pixels.
 const SIZE: (u32, u32) = (960, 600);
+
+/// Values on logarithmic axes; of wider ranges plotters look for labels without end.
+const DRAWN: RangeInclusive<f64> = 1e-30..=1e30;
 
 /// Height of a name in a chart, pixels.
 const NAME_HEIGHT: f64 = 12.0;

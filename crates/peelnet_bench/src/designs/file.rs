@@ -112,9 +112,9 @@ impl RawDesign {
         };
         let inputs = self.inputs()?;
         let hidden = self.hidden.unwrap_or_else(|| vec![12]);
-        if let Some(width) = hidden.iter().find(|w| !(1..=MAX_WIDTH).contains(*w)) {
+        if let Some(width) = hidden.iter().find(|w| !(2..=MAX_WIDTH).contains(*w)) {
             return Err(format!(
-                "hidden holds {width}; give widths from 1 to {MAX_WIDTH}"
+                "hidden holds {width}; give widths from 2 to {MAX_WIDTH}"
             ));
         }
         let loss = match &self.loss {

@@ -56,9 +56,12 @@ impl<T: Measurement> Results<T> {
     pub fn write(&self, folder: &Path) -> Result<(), EvalError> {
         for (name, text) in T::FILES {
             let text = text(self, folder)?;
-            // A chart of nothing is left out.
-            if !(text.is_empty() && name.ends_with(".svg")) {
-                write_file(&folder.join(name), text)?;
+            let path = folder.join(name);
+            // A chart of nothing is left out, and an older one is not of these results.
+            if text.is_empty() && name.ends_with(".svg") {
+                let _ = std::fs::remove_file(path);
+            } else {
+                write_file(&path, text)?;
             }
         }
         Ok(())

@@ -6,6 +6,7 @@
 
 use super::{invalid, read_head, shown};
 use std::{
+    cell::Cell,
     collections::{BTreeMap, BTreeSet},
     fs::{self, Metadata},
     io::{self, Write as _},
@@ -600,9 +601,27 @@ impl Drop for Unfinished {
     }
 }
 
-/// Finished files move into place: until this is dropped, a process that wants to end waits.
-pub fn moving() -> RwLockReadGuard<'static, ()> {
-    MOVING.read().unwrap_or_else(PoisonError::into_inner)
+thread_local! {
+    /// How many [`Moving`] this thread has.
+    static DEPTH: Cell<usize> = const { Cell::new(0) };
+}
+
+/// Until this is dropped, a process that wants to end waits.
+#[derive(Debug)]
+pub struct Moving(Option<RwLockReadGuard<'static, ()>>);
+
+/// Finished files move into place.
+pub fn moving() -> Moving {
+    // A second reader of a thread would wait behind who wants to write, and that one for the first.
+    let outer = DEPTH.replace(DEPTH.get() + 1);
+    Moving((outer == 0).then(|| MOVING.read().unwrap_or_else(PoisonError::into_inner)))
+}
+
+impl Drop for Moving {
+    fn drop(&mut self) {
+        self.0 = None;
+        DEPTH.set(DEPTH.get() - 1);
+    }
 }
 
 /// Waits for files that move into place, removes every file and folder that is unfinished, and lets no other move: for a process that ends

@@ -22,7 +22,7 @@ pub(super) struct Libraries<'a, 'f> {
     path: &'a Path,
     pub files: &'a mut Files<'f>,
     /// Textures by their files; `None` for those that cannot be drawn.
-    pub textures: HashMap<PathBuf, Option<Arc<Texture>>>,
+    pub textures: HashMap<String, Option<Arc<Texture>>>,
     /// Numbers of materials by their names, for each library.
     numbers: HashMap<PathBuf, HashMap<String, usize>>,
     materials: Vec<Material>,

@@ -100,7 +100,9 @@ impl Libraries<'_, '_> {
 
     /// A texture; `None`, and a warning, where it cannot be drawn.
     fn texture(&mut self, file: &Path) -> Option<Arc<Texture>> {
-        if let Some(known) = self.textures.get(file) {
+        // Names of one file are many, such as a/../a/b.png.
+        let key = self.files.identity(file);
+        if let Some(known) = self.textures.get(&key) {
             return known.clone();
         }
         let texture = self.files.texture(file).map(Arc::new).map_err(|e| {
@@ -113,7 +115,7 @@ impl Libraries<'_, '_> {
             self.files.warnings.about("", &shown(file), after);
         });
         let texture = texture.ok();
-        self.textures.insert(file.to_owned(), texture.clone());
+        self.textures.insert(key, texture.clone());
         texture
     }
 

@@ -68,12 +68,13 @@ impl Reader<'_, '_> {
 
     /// Zeros, and what a sparse accessor has in place of some of them, lie in no bytes that say how many there can be.
     pub fn check_zeros(&self, document: &gltf::Document) -> Result<(), String> {
-        let held: usize = self.buffers.iter().map(|bytes| bytes.len()).sum();
+        let held = self.buffers.iter().map(|bytes| bytes.len()).max();
+        let held = held.unwrap_or_default();
         let mut zeros = document.accessors().filter(|a| a.view().is_none());
         match zeros.find(|a| a.count() > held) {
             None => Ok(()),
             Some(accessor) => Err(format!(
-                "accessor {} has {} values without bytes, and all buffers {held} bytes; export it again",
+                "accessor {} has {} values without bytes, and its largest buffer {held} bytes; export it again",
                 accessor.index(),
                 accessor.count()
             )),

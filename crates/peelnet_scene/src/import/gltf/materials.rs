@@ -14,7 +14,7 @@ use gltf::{
     texture::{MagFilter, WrappingMode},
 };
 use peelnet_core::files::printable;
-use std::sync::Arc;
+use std::{path::Path, sync::Arc};
 
 /// The UV set of a texture, and the transform of its UVs.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -69,7 +69,16 @@ fn placed_textures<'a>(m: &gltf::Material<'a>) -> [Option<(gltf::Texture<'a>, Pl
 impl Reader<'_, '_> {
     /// A texture, read once, `opaque` without its opacity; `None`, with a warning, where it cannot be drawn.
     fn image(&mut self, image: &gltf::Image<'_>, opaque: bool) -> Option<Arc<Texture>> {
-        let key = (image.index(), opaque);
+        // Of many images with one source, it is decoded once.
+        let source = match image.source() {
+            gltf::image::Source::View { view, .. } => format!("view {}", view.index()),
+            gltf::image::Source::Uri { uri, .. } => {
+                let folder = self.path.parent().unwrap_or(Path::new("."));
+                let uri = urlencoding::decode(uri).unwrap_or(uri.into());
+                self.files.identity(&folder.join(&*uri))
+            }
+        };
+        let key = (source, opaque);
         if let Some(known) = self.images.get(&key) {
             return known.clone();
         }

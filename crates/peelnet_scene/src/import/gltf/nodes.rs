@@ -18,8 +18,8 @@ pub(super) struct Reader<'a, 'f> {
     pub path: &'a Path,
     pub files: &'a mut Files<'f>,
     pub buffers: Vec<Arc<Vec<u8>>>,
-    /// By number, and whether opacity is left out; `None` for those that cannot be drawn.
-    pub images: HashMap<(usize, bool), Option<Arc<Texture>>>,
+    /// By source, and whether opacity is left out; `None` for those that cannot be drawn.
+    pub images: HashMap<(String, bool), Option<Arc<Texture>>>,
     /// What stands before what the file uses and is not drawn.
     pub not_drawn: String,
     pub loaded: Imported,
