@@ -139,7 +139,7 @@ const REFUSED: &str = "
 
     1 | extract orbit.toml --size 16x16 --out shard --shard 2/2 | size is 16x12 & worker test & use the same command
     1 | extract orbit.toml --size 16x12 --out shard --seed 9 --resume | seed is 1 & use the same command
-    1 | extract orbit.toml --size 16x12 --out shard --max-passes 2 --resume | no passes to limit & --peel dual
+    2 | extract orbit.toml --size 16x12 --out shard --max-passes 2 --resume | no passes to limit & --peel dual
     1 | extract orbit.toml --size 16x12 --out shard --views 1 --resume | list of cameras is
     1 | extract two.toml --size 16x12 --out shard --resume | scene 0 is
     1 | extract orbit.toml --size 16x12 --out shard --format npy --shard 2/2 | format is parquet

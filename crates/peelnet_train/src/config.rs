@@ -275,7 +275,7 @@ mod tests {
             }),
             ("max_rows", |c| c.max_rows = 0),
             ("2147483647", |c| c.max_rows = u64::MAX),
-            ("1 to 4096", |c| c.hidden = vec![1_000_000_000, 8]),
+            ("2 to 4096", |c| c.hidden = vec![1_000_000_000, 8]),
             ("4,194,304", |c| c.hidden = vec![4096; 1000]),
             ("buffer_rows", |c| c.buffer_rows = Some(0)),
             ("chunk", |c| c.chunk = 0),

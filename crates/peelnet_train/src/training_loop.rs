@@ -314,7 +314,7 @@ impl Run<'_> {
             String::new()
         };
         TrainError::Failed(format!(
-            "training diverged in epoch {}: {what} is not finite; a lower learning rate than {:?} may help{kept}",
+            "training diverged in epoch {}: {what} is not finite or beyond use; a lower learning rate than {:?} may help{kept}",
             progress.history.len() + 1,
             self.config.learning_rate
         ))
@@ -383,9 +383,12 @@ impl Run<'_> {
     }
 }
 
-/// What of an epoch is not finite.
+/// Errors of what is learned are of the size of 1: beyond, a network says nothing, and will not return.
+const MOST_LOSS: f64 = 1e6;
+
+/// What of an epoch is not finite, or too large.
 fn not_finite(report: &EpochReport, adam: &Adam) -> Option<&'static str> {
-    let is_bad = |loss: f64| !loss.is_finite();
+    let is_bad = |loss: f64| loss.is_nan() || loss > MOST_LOSS;
     if is_bad(report.train_loss) {
         Some("the training loss")
     } else if report.held_out_loss.is_some_and(is_bad) {

@@ -326,7 +326,7 @@ seed = 7
             ("\"of_own\"", "\"of_mine\"", second, "half_extent"),
             ("\"of_own\"", "\"share_low\"", second, "twice"),
             ("\"mean_fraction\", ", "", second, "begin with"),
-            ("[8, 4]", "[8, 0]", second, "1 to 4096"),
+            ("[8, 4]", "[8, 0]", second, "2 to 4096"),
             ("\"contributions\"", "\"l2\"", second, "transmittance"),
             ("\"full\"", "\"plain\"", "design 2", "rename"),
             ("epochs = 3", "epochs = 0", "[training]", "greater than 0"),

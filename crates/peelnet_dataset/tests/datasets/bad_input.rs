@@ -191,7 +191,10 @@ fn manifests() {
     let folder = temporary();
     let folder = folder.path();
     opening_fails(folder, &["no _peelnet/manifest.json", "peelnet extract"]);
-    opening_fails(&folder.join("nowhere"), &["nowhere", "open"]);
+    opening_fails(
+        &folder.join("nowhere"),
+        &["nowhere", "no such dataset", "peelnet extract"],
+    );
     write(folder, Format::Csv).unwrap();
     let path = folder.join(MANIFEST);
     let good = fs::read_to_string(&path).unwrap();
@@ -322,14 +325,13 @@ fn files_that_no_manifest_lists_are_never_removed() {
 #[test]
 fn pipes_and_devices_are_no_files_of_a_dataset() {
     let folder = temporary();
-    let mut manifest = write(folder.path(), Format::Csv).unwrap();
+    let mut manifest = write(folder.path(), Format::Parquet).unwrap();
     let empty = manifest.parts[3].files[0].name.clone();
     let (part, path) = (folder.path().join(&empty), folder.path().join(MANIFEST));
     fs::remove_file(&part).unwrap();
     let made = std::process::Command::new("mkfifo").arg(&part).status();
     assert!(made.unwrap().success());
     // The length of a pipe is 0, and no rows need no bytes.
-    manifest.format = Format::Parquet;
     manifest.parts[3].files[0].bytes = 0;
     put_manifest(folder.path(), &manifest);
     let dataset = Dataset::open(folder.path()).unwrap();
