@@ -89,6 +89,11 @@ const REFUSED: &str = "
     1 | train two.toml --out m | two.toml: is a file, and a dataset is a folder & peelnet extract
     1 | export sound --out w.wgsl | sound: is a folder, and a network is a file & peelnet train
     1 | train edited --out m | edited: the manifest and the plan say different things & peelnet extract
+    1 | bench two.toml --views 7 --methods blended --out b | two.toml has 1 of the 7 views
+    1 | bench two.toml --methods blended --out s3://bucket/b | is an address; name a folder
+    1 | train nowhere --out m | nowhere: there is no such dataset & peelnet extract
+    2 | train sound --out m --lr 1e30 | below 10
+    2 | train sound --out m --hidden 1 | widths from 2
     2 | inspect sound --time | sound: --time measures a scene's effects
     2 | inspect two.toml --files-from nowhere | --files-from nowhere: is no folder
     2 | train sound --out m --lr 1e-30 | learning_rate & --lr

@@ -144,6 +144,31 @@ fn signals_end_every_command() {
     }
 }
 
+/// Who starts a command to ignore a signal, as `nohup` does, has it ignored.
+#[cfg(target_os = "linux")]
+#[test]
+fn ignored_signals_stay_ignored() {
+    use std::time::Duration;
+    let folder = Folder::new(&[]);
+    folder.prints("extract --synthetic 3000 --out d");
+    let command = folder.command("train d --epochs 1000000 --recipe small --out n");
+    let mut ignoring = std::process::Command::new("sh");
+    ignoring.args(["-c", "trap '' HUP; exec \"$@\"", "sh"]);
+    ignoring.arg(command.get_program()).args(command.get_args());
+    let mut child = ignoring.current_dir(folder.path()).spawn().unwrap();
+    let send = |signal: &str| {
+        std::thread::sleep(Duration::from_millis(400));
+        let id = child.id().to_string();
+        let sent = std::process::Command::new("kill")
+            .args(["-s", signal, &id])
+            .status();
+        assert!(sent.unwrap().success());
+    };
+    send("HUP");
+    send("TERM");
+    assert_eq!(child.wait().unwrap().code(), Some(143));
+}
+
 /// Mesa's drivers say what they miss in the environment on stderr.
 #[cfg(target_os = "linux")]
 #[test]

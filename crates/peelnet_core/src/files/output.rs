@@ -644,6 +644,19 @@ pub fn remove_unfinished() {
 mod tests {
     use super::*;
 
+    /// A thread that moves files within a move does not wait for a process that waits for the first.
+    #[test]
+    fn moves_nest() {
+        let outer = moving();
+        let ends = std::thread::spawn(|| drop(MOVING.write()));
+        while MOVING.try_read().is_ok() {
+            std::thread::yield_now();
+        }
+        drop(moving());
+        drop(outer);
+        ends.join().expect("gets its turn");
+    }
+
     const NOTE: Kind = Kind {
         name: "a note",
         is: |head| head.starts_with(b"note"),

@@ -83,6 +83,32 @@ fn held_out_scenes_are_left_out_and_pixels_are_split_whole() {
     assert!(text.contains(": no rows to train on"), "{text}");
 }
 
+/// Scenes in another order are the same scenes.
+#[test]
+fn a_view_in_two_datasets_would_count_twice() {
+    let folder = tempfile::tempdir().unwrap();
+    let scenes = ["a", "b"].map(|name| SceneEntry {
+        content: name.repeat(64),
+        ..scene(name, false)
+    });
+    let write = |name: &str, scenes: &[SceneEntry], layers| {
+        write_views(&folder.path().join(name), 3, scenes.to_vec(), |view| {
+            stacks(view, layers)
+        })
+    };
+    let [a, b] = scenes;
+    let config = Config::for_recipe(Recipe::THESIS);
+    let datasets = [
+        write("ab", &[a.clone(), b.clone()], 3),
+        write("ba", &[b, a], 4),
+    ];
+    assert!(TrainingData::from_datasets(&config, &datasets[..1]).is_ok());
+    let error = TrainingData::from_datasets(&config, &datasets)
+        .unwrap_err()
+        .to_string();
+    assert!(error.contains("both hold view 0 of scene 'b'"), "{error}");
+}
+
 /// Of more rows than may be held, whole pixels are drawn: of every view its share, and the same ones for the same seed.
 #[test]
 fn more_rows_than_the_limit_are_drawn_by_whole_pixels_from_every_view() {
