@@ -128,8 +128,9 @@ impl<'a> Files<'a> {
 
     /// A file whose bytes stay as they are, read once under all of its names.
     pub fn buffer(&mut self, path: &Path, limit: u64) -> Result<Arc<Vec<u8>>, SceneError> {
+        let placed = self.check_place(path);
         let key = self.identity(path);
-        if let Some(known) = self.buffers.get(&key) {
+        if let Some(known) = self.buffers.get(&key).filter(|_| placed.is_ok()) {
             return Ok(Arc::clone(known));
         }
         let bytes = Arc::new(self.read(path, limit)?);

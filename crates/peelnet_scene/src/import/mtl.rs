@@ -24,7 +24,7 @@ pub(super) struct Libraries<'a, 'f> {
     /// Textures by their files; `None` for those that cannot be drawn.
     pub textures: HashMap<String, Option<Arc<Texture>>>,
     /// Numbers of materials by their names, for each library.
-    numbers: HashMap<PathBuf, HashMap<String, usize>>,
+    numbers: HashMap<String, HashMap<String, usize>>,
     materials: Vec<Material>,
     /// Whether a library is missing.
     is_incomplete: bool,
@@ -48,7 +48,7 @@ impl<'a, 'f> Libraries<'a, 'f> {
 
     /// The numbers of a library's materials.
     pub fn names(&self, name: &Path) -> HashMap<String, usize> {
-        let numbers = self.numbers.get(&self.file(name));
+        let numbers = self.numbers.get(&self.files.identity(&self.file(name)));
         numbers.cloned().unwrap_or_default()
     }
 
@@ -58,7 +58,9 @@ impl<'a, 'f> Libraries<'a, 'f> {
     /// A value that makes no sense, with its line.
     pub fn load(&mut self, name: &str) -> Result<bool, SceneError> {
         let file = self.file(Path::new(name));
-        if self.numbers.contains_key(&file) {
+        // Names of one file are many.
+        let key = self.files.identity(&file);
+        if self.numbers.contains_key(&key) {
             return Ok(false);
         }
         let files = &mut *self.files;
@@ -70,7 +72,7 @@ impl<'a, 'f> Libraries<'a, 'f> {
                     &shown(&file),
                     format!(" ({source}); default material used"),
                 );
-                self.numbers.insert(file, HashMap::new());
+                self.numbers.insert(key, HashMap::new());
                 return Ok(true);
             }
             bytes => bytes?,
@@ -91,7 +93,7 @@ impl<'a, 'f> Libraries<'a, 'f> {
             let material = self.put_on(&file, m, material(m, lighting));
             self.materials.push(material);
         }
-        self.numbers.insert(file, numbers);
+        self.numbers.insert(key, numbers);
         Ok(true)
     }
 

@@ -161,6 +161,15 @@ fn check_header(header: &Header, head: &[u8], held: u64) -> Result<(), Fault> {
     }
     let mut needed = 0u64;
     for element in header.elements.values() {
+        // Nothing of the file would bound their count.
+        if element.properties.is_empty()
+            && ["vertex", "face", "tristrips"].contains(&&*element.name)
+        {
+            return Err(in_file(format!(
+                "its elements '{}' have no properties; export it again",
+                element.name
+            )));
+        }
         let types = element.properties.values().map(|p| &p.data_type);
         let least: u64 = types.map(|t| least_bytes(t, header.encoding)).sum();
         needed = needed.saturating_add(least.saturating_mul(element.count as u64));

@@ -1,8 +1,9 @@
 use earcut::{Earcut, utils3d::project3d_to_2d};
 use glam::DVec3;
 
-/// Vertices of the largest concave polygon that is cut: `earcut` needs time by their square.
-const MAX_CONCAVE: usize = 20_000;
+/// Vertices of the largest concave polygon that is cut: `earcut` needs time by their square, and where one lies far from all others by the
+/// third power.
+const MAX_CONCAVE: usize = 5_000;
 
 /// Cuts polygons into triangles; keeps its buffers from polygon to polygon.
 #[derive(Default)]
