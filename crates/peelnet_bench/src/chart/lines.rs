@@ -32,7 +32,7 @@ pub enum Scale {
     Logarithmic,
 }
 
-/// Lines over a logarithmic y axis, with the titles of both axes. Values outside of [`DRAWN`] are left out where an axis is logarithmic.
+/// Lines over a logarithmic y axis, with the titles of both axes. Values outside of 1e-30 to 1e30 are left out where an axis is logarithmic.
 pub fn line_chart(lines: &[Line], x: &str, y: &str, x_scale: Scale) -> Svg {
     let is_shown = |&(x, y): &(f64, f64)| {
         let has_x = match x_scale {
