@@ -157,7 +157,7 @@ impl Image {
         writer.finish()
     }
 
-    /// Writes the image in the format that [`ImageFormat::of`] finds. The file appears whole or not at all.
+    /// Writes the image in the format that [`ImageFormat::from_ending`] finds. The file appears whole or not at all.
     ///
     /// # Errors
     /// An unknown ending, or a file that cannot be written.
