@@ -29,8 +29,9 @@ fn listen() -> std::io::Result<()> {
     use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGXFSZ};
     // With a handler, a file beyond `ulimit -f` is an error of writing like a full disk.
     signal_hook::flag::register(SIGXFSZ, std::sync::Arc::default())?;
+    let ignored = ignored();
     let heard = [SIGINT, SIGTERM, SIGHUP].into_iter();
-    let heard = heard.filter(|signal| ignored() & (1 << (signal - 1)) == 0);
+    let heard = heard.filter(|signal| ignored & (1 << (signal - 1)) == 0);
     let mut signals = signal_hook::iterator::Signals::new(heard)?;
     std::thread::spawn(move || signals.forever().for_each(on_signal));
     Ok(())

@@ -76,14 +76,9 @@ pub fn bench_watched(
     if let Some(k) = (1..names.len()).find(|&k| names[..k].contains(&names[k])) {
         return Err(EvalError::SameMethod(names[k].clone()));
     }
-    if let Some(scene) = scenes.iter().find(|s| plan.views_of(s) > s.views.len()) {
-        return Err(EvalError::Unusable(format!(
-            "scene {} has {} of the {} views that were asked for; ask for fewer",
-            scene.source.display(),
-            scene.views.len(),
-            plan.views_of(scene)
-        )));
-    }
+    let views = scenes.iter().map(|scene| scene.first_views(plan.views));
+    let checked: Result<Vec<_>, String> = views.collect();
+    checked.map_err(EvalError::Unusable)?;
     let load_before = load();
     let left = |s: &Scene| plan.views_of(s).saturating_sub(partial.done(&s.name).len());
     let views: usize = scenes.iter().map(left).sum();

@@ -28,11 +28,9 @@ pub struct Recommendation<'a> {
 
 /// The points of a scene among the rows; where it is not among them those over all scenes, and a warning that says so.
 pub fn points_for(rows: &[Row], scene: &Scene) -> (Vec<Point>, Option<String>) {
-    let own: Vec<Row> = rows
-        .iter()
-        .filter(|row| row.scene_content == scene.content)
-        .cloned()
-        .collect();
+    // Rows of before there was a hash, and scenes that are built in code, have none.
+    let is_own = |row: &&Row| row.scene_content == scene.content && !scene.content.is_empty();
+    let own: Vec<Row> = rows.iter().filter(is_own).cloned().collect();
     let own = points(&Rows::new(&own), Mean::Geometric);
     if !own.is_empty() {
         return (own, None);

@@ -216,13 +216,15 @@ pub(crate) fn store_at(path: &Path) -> Result<Arc<dyn Store>, DatasetError> {
 pub(crate) fn open_store(path: &Path) -> Result<Arc<dyn Store>, DatasetError> {
     let store = store_at(path)?;
     if let Some(folder) = store.folder() {
-        if folder.is_file() {
-            let reason = "is a file, and a dataset is a folder; write one of a scene with `peelnet extract SCENE --out DATASET`";
-            return Err(DatasetError::invalid(path, reason));
-        }
-        if !folder.exists() {
-            let reason = "there is no such dataset; write one of a scene with `peelnet extract SCENE --out DATASET`";
-            return Err(DatasetError::invalid(path, reason));
+        let instead = match folder.exists() {
+            false => Some("there is no such dataset"),
+            true => folder
+                .is_file()
+                .then_some("is a file, and a dataset is a folder"),
+        };
+        if let Some(what) = instead {
+            let fix = "write one of a scene with `peelnet extract SCENE --out DATASET`";
+            return Err(DatasetError::invalid(path, format!("{what}; {fix}")));
         }
         // The error of the system says what is wrong with it.
         fs::read_dir(folder).map_err(DatasetError::io(folder, "open the dataset's folder"))?;

@@ -18,8 +18,8 @@ pub fn shard_items(scenes: &[Scene], options: &ExtractOptions) -> Result<Vec<Par
 /// scenes' own.
 ///
 /// # Errors
-/// A limit of passes where there are none; no view at all; a scene with fewer views than asked for; two scenes of one name; more items than a dataset can have; a fraction of
-/// pixels outside 0 … 1.
+/// A limit of passes where there are none; no view at all; a scene with fewer views than asked for; two scenes of one name; more items than a
+/// dataset can have; a fraction of pixels outside 0 … 1.
 pub fn items(scenes: &[Scene], options: &ExtractOptions) -> Result<Vec<Part>, PeelError> {
     let (pixels, [width, height]) = (options.pixels, options.size);
     if !(pixels > 0.0 && pixels <= 1.0) {
@@ -44,15 +44,8 @@ pub fn items(scenes: &[Scene], options: &ExtractOptions) -> Result<Vec<Part>, Pe
             );
             return Err(PeelError::setting("scenes", reason));
         }
-        let views = options.views.map_or(scene.views.len(), |n| n as usize);
-        let Some(views) = scene.views.get(..views) else {
-            let reason = format!(
-                "scene {} has {} of the {views} views that were asked for: ask for fewer, or add [orbit] or [[view]]",
-                scene.source.display(),
-                scene.views.len()
-            );
-            return Err(PeelError::setting("views", reason));
-        };
+        let views = scene.first_views(options.views.map(|n| n as usize));
+        let views = views.map_err(|reason| PeelError::setting("views", reason))?;
         // Before memory is taken for them.
         count += (u64::from(options.augment) + 1) * views.len() as u64;
         if count > u64::from(MAX_WORK_ITEMS) {

@@ -80,7 +80,7 @@ impl<'a> Files<'a> {
         }
     }
 
-    /// What files are told apart by: one file has many names.
+    /// A key of a file, the same under all of its names where the system has numbers of files.
     pub fn identity(&self, path: &Path) -> String {
         let on_disk = self.allowed.as_ref();
         match on_disk.and_then(|_| peelnet_core::files::identity(path)) {

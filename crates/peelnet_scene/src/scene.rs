@@ -134,6 +134,21 @@ impl Scene {
         }
     }
 
+    /// So many of its views, from the first; all where no number is asked for.
+    ///
+    /// # Errors
+    /// Fewer views than that, in words.
+    pub fn first_views(&self, asked: Option<usize>) -> Result<&[Camera], String> {
+        let asked = asked.unwrap_or(self.views.len());
+        self.views.get(..asked).ok_or_else(|| {
+            format!(
+                "scene {} has {} of the {asked} views that were asked for: ask for fewer, or add [orbit] or [[view]]",
+                self.source.display(),
+                self.views.len()
+            )
+        })
+    }
+
     /// The same scene with all of its lengths multiplied, the planes of its cameras too.
     pub fn scaled(&self, factor: f32) -> Self {
         let mut scene = self.clone();

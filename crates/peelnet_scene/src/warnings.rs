@@ -1,6 +1,11 @@
 //! Warnings, one for each kind of problem: twenty thousand materials with the same one are one line.
 
-use std::collections::{HashMap, HashSet};
+use crate::error::shown;
+use peelnet_core::files::printable;
+use std::{
+    collections::{HashMap, HashSet},
+    path::Path,
+};
 
 /// Names that a warning lists.
 const LISTED: usize = 3;
@@ -37,6 +42,15 @@ impl Warnings {
         if kind.all.insert(name.to_owned()) && kind.listed.len() < LISTED {
             kind.listed.push(name.to_owned());
         }
+    }
+
+    /// Adds a warning about something that a file has and that is not drawn.
+    pub fn not_drawn(&mut self, path: &Path, name: &str) {
+        self.about(
+            format!("{}: not drawn: ", shown(path)),
+            &printable(name),
+            "",
+        );
     }
 
     /// The warnings, each on one line and printable.

@@ -160,9 +160,14 @@ pub(super) fn warn_of_empty(context: &Context<'_>, report: &ExtractReport) {
     let empty = m.scenes.iter().filter(|s| rows.get(&*s.name) == Some(&0));
     let empty: Vec<String> = empty.map(|s| s.name.clone()).collect();
     if m.is_whole() && !empty.is_empty() {
+        let or = if m.pixels_fraction < 1.0 {
+            ", or keep more with --pixels"
+        } else {
+            ""
+        };
         context.console.warn(format!(
-            "no rows: nothing transparent is seen in {}; look at its materials' alpha and its cameras{}",
-            few(&empty, 6), if m.pixels_fraction < 1.0 { ", or keep more with --pixels" } else { "" }
+            "no rows: nothing transparent is seen in {}; look at its materials' alpha and its cameras{or}",
+            few(&empty, 6)
         ));
     }
 }

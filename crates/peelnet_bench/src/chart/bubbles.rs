@@ -18,7 +18,8 @@ fn title(p: &Point) -> String {
     format!("{method}: {error}, {time:.2} x hardware blending, {bytes} bytes a pixel")
 }
 
-/// A bubble for each method, as large as its bytes per pixel; they come by time. Those whose time or error is outside of 1e-30 to 1e30 are left out.
+/// A bubble for each method, as large as its bytes per pixel; they come by time. Those whose time or error is outside of 1e-30 to 1e30 are
+/// left out.
 pub fn bubble_chart(points: &[Point]) -> Svg {
     let is_shown = |p: &&Point| DRAWN.contains(&p.time) && DRAWN.contains(&p.error);
     let points: &[Point] = &points.iter().filter(is_shown).cloned().collect::<Vec<_>>();

@@ -115,7 +115,7 @@ fn find(file: &Path) -> io::Result<Option<Existing>> {
     }))
 }
 
-/// What a file is told apart by on this machine, whatever its name; `None` where systems do not say it.
+/// Device and number of a file, the same under all of its names; `None` where the system has none.
 pub fn identity(path: &Path) -> Option<(u64, u64)> {
     file_id(&fs::metadata(path).ok()?)
 }

@@ -93,9 +93,8 @@ fn is_hidden(c: char) -> bool {
             | '\u{2060}'..='\u{206f}' | '\u{feff}' | '\u{fff9}'..='\u{fffb}' | '\u{e0000}'..='\u{e007f}')
 }
 
-/// Lower-case hexadecimal digits, as hashes are written.
 /// Names as near to one that is not known as a slip of the hand: those that begin with it, or are spelt nearly so; the nearest first.
-pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Vec<&'a str> {
+fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Vec<&'a str> {
     /// Of Jaro and Winkler's similarity, 0 … 1: `wbiot` has 0.82 of `wboit-eq9`, `smoke` 0.5 of `cups`.
     const LEAST: f64 = 0.8;
     const MOST: usize = 5;
@@ -118,6 +117,7 @@ pub fn known_names(name: &str, known: &[&str]) -> String {
     }
 }
 
+/// Lower-case hexadecimal digits, as hashes are written.
 pub fn hex(bytes: &[u8]) -> String {
     bytes.iter().map(|b| format!("{b:02x}")).collect()
 }

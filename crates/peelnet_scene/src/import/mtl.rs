@@ -115,7 +115,6 @@ impl<'a, 'f> Libraries<'a, 'f> {
 /// statements that are not drawn.
 fn check(path: &Path, text: &str, warnings: &mut Warnings) -> Result<String, SceneError> {
     let mut out = String::with_capacity(text.len());
-    let not_drawn = format!("{}: not drawn: ", shown(path));
     for (line, number) in text.lines().zip(1..) {
         let (key, rest) = line.split_once(' ').unwrap_or((line, ""));
         let fault = |what: &str| {
@@ -126,8 +125,7 @@ fn check(path: &Path, text: &str, warnings: &mut Warnings) -> Result<String, Sce
             "Kd" | "Ks" | "Ke" | "d" | "Tr" | "Ns" => {
                 let halo = rest.strip_prefix("-halo ");
                 if halo.is_some() {
-                    let message = "-halo (opacity is the same all over a surface)";
-                    warnings.add(format!("{not_drawn}{message}"));
+                    warnings.not_drawn(path, "-halo (opacity is the same all over a surface)");
                 }
                 let words = halo.unwrap_or(rest).split_whitespace().take(3);
                 let numbers: Vec<f32> =
@@ -156,7 +154,7 @@ fn check(path: &Path, text: &str, warnings: &mut Warnings) -> Result<String, Sce
             "Tf" if rest.split_whitespace().all(|word| word.parse() == Ok(1.0)) => {}
             "" | "newmtl" | "Pr" | "Pm" => out += line,
             _ if drawn_as(key).is_some() => out += line,
-            _ => warnings.about(not_drawn.as_str(), &printable(key), ""),
+            _ => warnings.not_drawn(path, key),
         }
         out.push('\n');
     }

@@ -160,11 +160,7 @@ fn check(path: &Path, text: &str, libraries: &mut Libraries<'_, '_>) -> Result<S
             _ => {
                 match list(key) {
                     Some(list) => read[list] += 1,
-                    None => libraries.files.warnings.about(
-                        format!("{}: not drawn: ", shown(path)),
-                        &printable(key),
-                        "",
-                    ),
+                    None => libraries.files.warnings.not_drawn(path, key),
                 }
                 continue;
             }

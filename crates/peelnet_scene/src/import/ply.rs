@@ -8,7 +8,7 @@ use super::{
     polygons::{Triangulator, strip},
     surface::{Fault, fault_of, in_file},
 };
-use crate::{budget::Budget, error::shown, files::Files, mesh::Mesh};
+use crate::{budget::Budget, files::Files, mesh::Mesh};
 use glam::{DVec3, Vec2, Vec3};
 use peelnet_core::files::{counted, printable};
 use ply_rs_bw::{
@@ -62,9 +62,8 @@ pub(super) fn read(path: &Path, bytes: &[u8], files: &mut Files<'_>) -> Result<M
             _ => false,
         };
         for name in element.properties.keys().filter(|name| !is_read(name)) {
-            let name = printable(&format!("{name} of {}", element.name)).into_owned();
-            let before = format!("{}: not drawn: ", shown(path));
-            files.warnings.about(before, &name, "");
+            let what = format!("{name} of {}", element.name);
+            files.warnings.not_drawn(path, &what);
         }
     }
     let mut reader = Faces {

@@ -44,6 +44,8 @@ pub(super) fn loses_transforms(document: &Value) -> bool {
     materials.into_iter().flatten().any(|m| {
         let of = |map: &str| m.pointer(map).map(|map| map.pointer(TRANSFORM));
         let first = [
+            "/extensions/KHR_materials_pbrSpecularGlossiness/diffuseTexture",
+            "/extensions/KHR_materials_pbrSpecularGlossiness/specularGlossinessTexture",
             "/pbrMetallicRoughness/baseColorTexture",
             "/pbrMetallicRoughness/metallicRoughnessTexture",
             "/emissiveTexture",
