@@ -3,45 +3,47 @@
 // GLSL ES 3.00, WebGL 2. Paste it below #version 300 es and precision highp float; and precision highp int;.
 // Network: 9-12-1 (Relu hidden, Sigmoid last), 133 parameters, 120 multiply-adds. Recipe large, seed 1, 80 epochs.
 // Answers: transmittance of what lies between a slab's known ends, exp(-absorbance * share) with absorbance = root_absorbance^2 and share in share_low .. share_high.
-// Input 0: root_absorbance (root of the absorbance between the slab's ends), 0.0 .. 15.927986 in training.
-// Input 1: depth_fraction (of the depth between the slab's ends), 0.0 .. 1.0 in training.
-// Input 2: mean_fraction (of the depth between the slab's ends), 0.0 .. 1.0 in training.
+// Input 0: root_absorbance (root of the absorbance between the slab's ends), 0.0 .. 20.264051 in training.
+// Input 1: place_fraction (of the way between the slab's ends), 0.0 .. 1.0 in training.
+// Input 2: mean_fraction (of the way between the slab's ends), 0.0 .. 1.0 in training.
 // Input 3: share_low (of the absorbance between the slab's ends), 0.0 .. 1.0 in training.
 // Input 4: share_high (of the absorbance between the slab's ends), 0.0 .. 1.0 in training.
-// Input 5: root_own (root of the fragment's absorbance), 0.031630483 .. 2.4929142 in training.
-// Input 6: half_extent (half of the depth between the slab's ends, in slabs), 0.00052083336 .. 1.0 in training.
-// Input 7: of_own (absorbance between the ends, of that and the fragment's), 0.0 .. 0.9999888 in training.
+// Input 5: root_own (root of the fragment's absorbance), 0.031630483 .. 2.4013393 in training.
+// Input 6: half_extent (half of the way between the slab's ends, in slabs), 0.00052083336 .. 1.0 in training.
+// Input 7: of_own (absorbance between the ends, of that and the fragment's), 0.0 .. 0.99999017 in training.
 // Input 8: of_nearest (absorbance between the ends, of that and the nearer end's), 0.0 .. 1.0 in training.
-// Trained on 21531714 rows of boxes, cups, foliage, intersecting, opaque-mix, panes, sixteen-025, sixteen-050, sixteen-075, sixteen-085, sixteen-random-alpha, sixteen-random-color, smoke-100, smoke-30, synthetic (dataset b7ad9cb0d2c09dc1638bcd9266d352a93f8e00bc73cd1e178a68bf55c7773289+ea59181067487e28a3ecbe45990ec58875bfc5212a817cbef25c5c9618a9c370).
-// Loss: training 0.000155, validation 0.000167, test 0.000143.
-// Held-out error, mean |T - T_exact|: boxes-held 0.00482, cups-held 0.00254, foliage-held 0.00078, panes-held 0.00016, sixteen-held 0.00063, smoke-held 0.00572.
+// Trained on 21565796 rows of boxes, cups, foliage, intersecting, opaque-mix, panes, sixteen-025, sixteen-050, sixteen-075, sixteen-085, sixteen-random-alpha, sixteen-random-color, smoke-100, smoke-30, synthetic (dataset f0e6c4a7cca08d560f99a5be9cbd1514bf8be352632a347602bf08363695fd29+eb0fb0725f43962450fda44a06f4c27ba969a523c02d556c7eebdda5833c5318).
+// Loss: training 0.000098, validation 0.000091, test 0.000097.
+// Held-out error, mean |T - T_exact|: boxes-held 0.00158, cups-held 0.00160, foliage-held 0.00055, panes-held 0.00017, sixteen-held 0.00036, smoke-held 0.00308.
 //
 // Self-tests, to some roundings of 32 bits; weights and colours also to those of 16-bit targets.
-// peelnet_weight(3.1536086, 0.34473258, 0.33871156, 0.35519254, 0.24246675, 1.3484817, 0.24470124, 0.5180234, 0.22806776) = 0.056587335
-// peelnet_weight(1.9897641, 0.025055587, 0.3786413, 0.595821, 0.28249002, 0.7963256, 0.6240396, 0.40492046, 0.91731685) = 0.10302619
-// peelnet_weight(2.0278628, 0.2162394, 0.7240006, 0.37958002, 0.26558614, 2.0352807, 0.5804378, 0.90978783, 0.04841405) = 0.21207522
+// peelnet_weight(0.46090248, 0.67085797, 0.16887921, 0.7373583, 0.19208878, 0.1129206, 0.12900263, 0.435835, 0.7663156) = 0.8718817
+// peelnet_weight(0.2836532, 0.13589168, 0.26682287, 0.7078695, 0.5534122, 0.8413221, 0.6951227, 0.37161812, 0.9624051) = 0.9452141
+// peelnet_weight(2.5799065, 0.2162394, 0.7240006, 0.37958002, 0.26558614, 1.9607327, 0.5804378, 0.9097891, 0.04841405) = 0.08160464
 // Four fragments of a pixel, near 1.0, far 8.0, background 0.25, 0.5, 0.75:
 //    z 1.0, alpha 0.5, rgb 1.0, 0.0, 0.0: zeta -1.0, weight 1.0
 //    z 2.0, alpha 0.5, rgb 0.0, 1.0, 0.0: zeta -0.33333334, weight 0.5
 //    z 4.0, alpha 0.5, rgb 0.0, 0.0, 1.0: zeta 0.33333334, weight 0.25
 //    z 8.0, alpha 0.9, rgb 1.0, 1.0, 1.0: zeta 1.0, weight 0.125
-//    target range: 1.0, 1.0
+//    target bins_front: 0.08627451, 0.0, 0.08627451, 0.0
+//    target bins_back: 0.0, 0.08627451, 0.0, 0.2901961
 //    target absorbances: 0.6931472, 0.6931472, 0.6931472, 2.302585
-//    target nearest: 64928.0, -3.4101562, -3.4101562, -64768.0
-//    target farthest: -65088.0, 3.4003906, 3.4003906, 65248.0
-//    target firsts: -0.6931472, 0.3630771, 0.3630771, 2.302585
+//    target nearest: 64928.0, -0.46533203, 0.005054474, -64768.0
+//    target farthest: -65088.0, 0.46411133, -0.0050735474, 65248.0
+//    target firsts: -0.6931472, 0.29681972, -0.145463, 2.302585
 //    colour of the pixel: 0.615625, 0.36875, 0.246875
 //
 // How to draw with it. Targets may have 32 bits a channel wherever 16 are named.
 // 0. zeta = peelnet_zeta(z, near, far): z is the distance along the view axis, near and far the range of z that the bounding boxes of the transparent objects in view span, clipped to the camera's. A tight range matters more than anything else you choose. Compute zeta with this function in all passes. Its range is the same for the whole frame: peelnet_zeta_in(z, peelnet_range(near, far)) is the same value, and the range may be passed in.
-// 1. Pass "range": draw all transparent surfaces, in any order. vec2 r = peelnet_pixel_range(zeta);
-//    range: rg8unorm, cleared to 0, blending MAX, from r
-// 2. Pass "statistics": draw all transparent surfaces, in any order. PeelnetStatistics s = peelnet_statistics(alpha, zeta, range);
+// 1. Pass "range": draw all transparent surfaces, in any order. PeelnetBins bins = peelnet_bins(alpha, zeta);
+//    bins_front: rgba8unorm, cleared to 0, blending ADD, from bins.front
+//    bins_back: rgba8unorm, cleared to 0, blending ADD, from bins.back
+// 2. Pass "statistics": draw all transparent surfaces, in any order. PeelnetStatistics s = peelnet_statistics(alpha, peelnet_in_pixel(zeta, bins_front, bins_back));
 //    absorbances: rgba16float, cleared to 0, blending ADD, from s.absorbances
 //    nearest: rgba16float, cleared to -65504, blending MAX, from s.nearest
 //    farthest: rgba16float, cleared to -65504, blending MAX, from s.farthest
 //    firsts: rgba16float, cleared to 0, blending ADD, from s.firsts
-// 3. Pass "weights": draw all transparent surfaces, in any order. float w = peelnet_fragment(alpha, zeta, range, absorbances, nearest, farthest, firsts).x;
+// 3. Pass "weights": draw all transparent surfaces, in any order. float w = peelnet_fragment(alpha, peelnet_in_pixel(zeta, bins_front, bins_back), absorbances, nearest, farthest, firsts).x;
 //    sums: rgba16float, cleared to 0, blending ADD, from vec4(alpha * rgb, alpha) * w
 // 4. Resolve: peelnet_resolve(sums, absorbances.x + absorbances.y + absorbances.z + absorbances.w, background) is the colour of the pixel, and its coverage in alpha.
 // - alpha is opacity, rgb the linear colour that is not multiplied by it. Resolve before tone mapping and encoding.
@@ -72,6 +74,10 @@ struct PeelnetBetween {
     float own;
     float nearest;
 };
+struct PeelnetBins {
+    vec4 front;
+    vec4 back;
+};
 struct PeelnetStatistics {
     vec4 absorbances;
     vec4 nearest;
@@ -79,13 +85,14 @@ struct PeelnetStatistics {
     vec4 firsts;
 };
 const float PEELNET_FAINT = 0.003921569;
-const float PEELNET_RANGE_TOP = 255.0;
+const float PEELNET_LEAST_SEEN = 0.00390625;
+const float PEELNET_BIN_LEVELS = 32.0;
 const float PEELNET_BINS = 1920.0;
 const float PEELNET_OPACITIES = 32.0;
 const float PEELNET_EMPTY = -65504.0;
-const float PEELNET_FIRST_END = 0.12;
-const float PEELNET_SECOND_END = 0.4;
-const float PEELNET_THIRD_END = 0.75;
+const float PEELNET_FIRST_END = 0.34;
+const float PEELNET_SECOND_END = 0.63;
+const float PEELNET_THIRD_END = 0.8;
 const float PEELNET_LAST_SLAB = 3.0;
 
 
@@ -123,36 +130,58 @@ vec3 peelnet_levels(vec3 halves) {
     return (vec3(30719.5) + (sign(halves) * from_middle_1));
 }
 
-vec2 peelnet_pixel_range(float zeta) {
-    float level = (PEELNET_RANGE_TOP * ((zeta * 0.5) + 0.5));
-    return (vec2((PEELNET_RANGE_TOP - floor(level)), ceil(level)) / vec2(255.0));
+PeelnetBins peelnet_bins(float alpha_1, float zeta) {
+    float bin_1 = min(floor(((zeta * 4.0) + 4.0)), 7.0);
+    float _e9 = peelnet_absorbance(alpha_1);
+    float level = (clamp(floor(((_e9 * PEELNET_BIN_LEVELS) + 0.5)), 1.0, 255.0) / 255.0);
+    return PeelnetBins(mix(vec4(0.0), vec4(level), equal(vec4(bin_1), vec4(0.0, 1.0, 2.0, 3.0))), mix(vec4(0.0), vec4(level), equal(vec4(bin_1), vec4(4.0, 5.0, 6.0, 7.0))));
+}
+
+vec4 peelnet_passing(float before, vec4 bins) {
+    float two = (bins.x + bins.y);
+    vec4 absorbances_2 = vec4(bins.x, two, (two + bins.z), ((two + bins.z) + bins.w));
+    return exp(((vec4(before) + absorbances_2) * -7.96875));
+}
+
+vec4 peelnet_shares(vec4 before_1, vec4 behind, vec4 bins_1) {
+    return mix(vec4(0.0), sqrt(max((before_1 - behind), vec4(0.00390625))), greaterThan(bins_1, vec4(0.0)));
+}
+
+float peelnet_in_pixel(float zeta_1, vec4 front, vec4 back) {
+    float place_3 = ((zeta_1 * 4.0) + 4.0);
+    vec4 none = vec4(0.0);
+    vec4 one = vec4(1.0);
+    vec4 _e12 = peelnet_passing(0.0, front);
+    vec4 _e14 = peelnet_passing(dot(front, one), back);
+    vec4 _e18 = peelnet_shares(vec4(1.0, _e12.xyz), _e12, front);
+    vec4 _e22 = peelnet_shares(vec4(_e12.w, _e14.xyz), _e14, back);
+    float passed = (dot(_e18, clamp((vec4(place_3) - vec4(0.0, 1.0, 2.0, 3.0)), none, one)) + dot(_e22, clamp((vec4(place_3) - vec4(4.0, 5.0, 6.0, 7.0)), none, one)));
+    float all_ = dot((_e18 + _e22), one);
+    return ((all_ == 0.0) ? sqrt((place_3 * 0.125)) : min((passed / max(all_, 1e-6)), 1.0));
 }
 
 float peelnet_of_slab(vec4 values, float slab) {
     return ((slab >= 2.0) ? ((slab == 3.0) ? values.w : values.z) : ((slab == 1.0) ? values.y : values.x));
 }
 
-PeelnetPlace peelnet_place(float alpha_1, float zeta_1, vec2 range_1) {
-    vec2 ends_1 = floor(((range_1 * PEELNET_RANGE_TOP) + vec2(0.5)));
-    float low = (PEELNET_RANGE_TOP - ends_1.x);
-    float t = clamp((((PEELNET_RANGE_TOP * ((zeta_1 * 0.5) + 0.5)) - low) / max((ends_1.y - low), 1.0)), 0.0, 1.0);
-    float _e27 = peelnet_absorbance(alpha_1);
+PeelnetPlace peelnet_place(float alpha_2, float t) {
+    float _e2 = peelnet_absorbance(alpha_2);
     float first_1 = ((t >= PEELNET_FIRST_END) ? 1.0 : 0.0);
-    float passed = ((first_1 + ((t >= PEELNET_SECOND_END) ? 1.0 : 0.0)) + ((t >= PEELNET_THIRD_END) ? 1.0 : 0.0));
-    float slab_2 = min(passed, PEELNET_LAST_SLAB);
-    float _e52 = peelnet_of_slab(vec4(0.0, 0.12, 0.4, 0.75), slab_2);
-    float _e58 = peelnet_of_slab(vec4(0.12, 0.4, 0.75, 1.0), slab_2);
-    float inside = ((t - _e52) / (_e58 - _e52));
-    float bin_1 = min(floor((inside * PEELNET_BINS)), 1919.0);
-    float opacity = floor((((_e27 / (_e27 + 1.0)) * 32.9375) + 0.5));
-    float near_2 = (((1919.0 - bin_1) * PEELNET_OPACITIES) + opacity);
-    return PeelnetPlace(_e27, slab_2, ((2.0 * inside) - 1.0), bin_1, near_2, ((bin_1 * PEELNET_OPACITIES) + opacity));
+    float passed_1 = ((first_1 + ((t >= PEELNET_SECOND_END) ? 1.0 : 0.0)) + ((t >= PEELNET_THIRD_END) ? 1.0 : 0.0));
+    float slab_2 = min(passed_1, PEELNET_LAST_SLAB);
+    float _e27 = peelnet_of_slab(vec4(0.0, 0.34, 0.63, 0.8), slab_2);
+    float _e33 = peelnet_of_slab(vec4(0.34, 0.63, 0.8, 1.0), slab_2);
+    float inside = ((t - _e27) / (_e33 - _e27));
+    float bin_2 = min(floor((inside * PEELNET_BINS)), 1919.0);
+    float opacity = floor((((_e2 / (_e2 + 1.0)) * 32.9375) + 0.5));
+    float near_2 = (((1919.0 - bin_2) * PEELNET_OPACITIES) + opacity);
+    return PeelnetPlace(_e2, slab_2, ((2.0 * inside) - 1.0), bin_2, near_2, ((bin_2 * PEELNET_OPACITIES) + opacity));
 }
 
-vec2 peelnet_records(float alpha_2, PeelnetPlace place) {
+vec2 peelnet_records(float alpha_3, PeelnetPlace place) {
     vec3 _e6 = peelnet_halves(vec3(place.near, place.far, place.far));
     vec2 levels_3 = _e6.xy;
-    return ((alpha_2 < PEELNET_FAINT) ? vec2(-65504.0) : levels_3);
+    return ((alpha_3 < PEELNET_FAINT) ? vec2(-65504.0) : levels_3);
 }
 
 vec2 peelnet_absorbances_of(vec2 levels_1) {
@@ -180,8 +209,8 @@ PeelnetBetween peelnet_between(PeelnetPlace place_1, float total, float first, v
     float near_bin = (1919.0 - near_back);
     float near_level = (levels_2.x + ((near_bin - near_back) * PEELNET_OPACITIES));
     vec2 _e23 = peelnet_absorbances_of(levels_2);
-    bool all_ = (_e23.x > (others - (((0.019354839 * (1.0 + _e23.x)) * (1.0 + _e23.x)) + noise)));
-    float near_3 = ((near_bin > place_1.bin) ? 0.0 : (all_ ? others : _e23.x));
+    bool all_1 = (_e23.x > (others - (((0.019354839 * (1.0 + _e23.x)) * (1.0 + _e23.x)) + noise)));
+    float near_3 = ((near_bin > place_1.bin) ? 0.0 : (all_1 ? others : _e23.x));
     float far_bin = floor((levels_2.y * 0.03125));
     if (!((levels_2.y == near_level))) {
         local = (levels_2.y < 0.0);
@@ -222,11 +251,11 @@ PeelnetBetween peelnet_between(PeelnetPlace place_1, float total, float first, v
     float depth = clamp((moment / max(rest, noise)), _e126, _e127);
     float _e129 = begin;
     float mean = clamp(((depth - _e129) * per_extent), 0.0, 1.0);
-    bool before = (x < mean);
-    float bound = ((before ? (1.0 - mean) : (x - mean)) / max((before ? (1.0 - x) : x), 1e-6));
-    float low_1 = (before ? 0.0 : bound);
-    float high = (before ? bound : 1.0);
-    return PeelnetBetween(max(rest, 0.0), x, mean, low_1, high, (0.5 * extent_1), b, in_front);
+    bool before_2 = (x < mean);
+    float bound = ((before_2 ? (1.0 - mean) : (x - mean)) / max((before_2 ? (1.0 - x) : x), 1e-6));
+    float low = (before_2 ? 0.0 : bound);
+    float high = (before_2 ? bound : 1.0);
+    return PeelnetBetween(max(rest, 0.0), x, mean, low, high, (0.5 * extent_1), b, in_front);
 }
 
 bool peelnet_is_kept(float own, float kept) {
@@ -241,14 +270,14 @@ bool peelnet_is_kept(float own, float kept) {
     return _e12;
 }
 
-float peelnet_share(float root_absorbance, float depth_fraction, float mean_fraction, float share_low, float share_high, float root_own, float half_extent, float of_own, float of_nearest) {
-    vec4 input_a = vec4(root_absorbance, depth_fraction, mean_fraction, share_low);
+float peelnet_share(float root_absorbance, float place_fraction, float mean_fraction, float share_low, float share_high, float root_own, float half_extent, float of_own, float of_nearest) {
+    vec4 input_a = vec4(root_absorbance, place_fraction, mean_fraction, share_low);
     vec4 input_b = vec4(share_high, root_own, half_extent, of_own);
     vec4 input_c = vec4(of_nearest, 0.0, 0.0, 0.0);
-    vec4 layer_a_a = max((((vec4(2.1840205, -6.0488615, -1.7244382, 4.7277613) + (mat4x4(vec4(0.047469564, 0.23515935, 0.11767298, 0.20192647), vec4(-1.7600293, 2.394223, -0.758209, -2.1273522), vec4(2.0526679, 1.8895667, 2.210894, -4.212481), vec4(-2.42305, 3.114414, -2.4845653, -3.50623)) * input_a)) + (mat4x4(vec4(-0.35380575, 4.11892, -0.80055463, -1.7894613), vec4(-0.050723393, -0.18910663, 1.6134852, 0.04007925), vec4(0.1851308, -0.37078544, -0.8427393, -0.83480763), vec4(-4.397573, -1.7329992, 1.3239111, -2.6379797)) * input_b)) + (vec4(0.40196586, -0.227467, 0.2835534, 2.2054615) * input_c.x)), vec4(0.0));
-    vec4 layer_a_b = max((((vec4(1.9635522, 4.22529, 1.7789874, 3.2397063) + (mat4x4(vec4(-0.123949684, 0.1417589, -0.018165613, 0.30577102), vec4(-2.7712479, -0.37093836, -3.3144624, 0.4114121), vec4(-1.2387592, 0.27240995, -2.6905491, -0.2897715), vec4(-3.0422947, 2.8530369, 0.19921339, 1.8955889)) * input_a)) + (mat4x4(vec4(-1.7535394, 1.0183004, -2.3712957, 0.010245026), vec4(0.41370788, -1.842587, -0.02716257, -0.41089702), vec4(-1.352047, 0.20369291, -0.00036163072, 0.227056), vec4(-2.7401996, -0.29923275, -0.37736642, -6.4913673)) * input_b)) + (vec4(7.169313, -4.077658, 1.7808118, 0.07814195) * input_c.x)), vec4(0.0));
-    vec4 layer_a_c = max((((vec4(4.769506, -8.370628, -7.2272587, 1.9382521) + (mat4x4(vec4(-0.13895983, 0.020408038, -0.14134641, 0.12772618), vec4(-2.391556, 1.2834508, 0.13731219, -0.86161965), vec4(1.3833116, -3.3067873, -3.9631188, 0.8292861), vec4(-2.9982097, -1.9966851, -3.7511098, -3.622401)) * input_a)) + (mat4x4(vec4(-1.2489822, 2.1839437, 1.1735235, -2.4171035), vec4(-0.3166327, -0.66815275, -0.15579033, -1.1183752), vec4(0.55134714, 0.6089045, -0.21319966, -0.09091094), vec4(-0.33495626, -0.9323972, 4.1316953, -5.4128723)) * input_b)) + (vec4(-4.170837, 10.21349, 7.2209086, 6.0569587) * input_c.x)), vec4(0.0));
-    float layer_b_a = (1.0 / (1.0 + exp(min(-((((-0.64744765 + dot(vec4(-1.6729233, 1.0259085, -0.40086138, -0.48241943), layer_a_a)) + dot(vec4(0.46246502, 0.4526373, -3.5602195, 1.6483781), layer_a_b)) + dot(vec4(-1.0833257, 0.46139312, -0.53797805, -0.71952), layer_a_c))), 80.0))));
+    vec4 layer_a_a = max((((vec4(3.2663903, -3.662527, -1.4858606, 9.079746) + (mat4x4(vec4(0.012053977, 0.10597747, -0.05008541, -0.14564426), vec4(-0.45787275, 1.1609957, -2.4251537, -1.3628559), vec4(0.14452827, -1.074953, 2.921781, -1.7066478), vec4(-5.0721173, 2.7570124, -6.907086, 2.6927578)) * input_a)) + (mat4x4(vec4(-0.67774475, 5.9952526, 0.84017164, -0.84743696), vec4(-0.28413337, -0.18752208, -0.9054862, -1.8464173), vec4(0.09005235, -0.942758, 2.040689, -1.9998521), vec4(-3.6150825, -3.5769734, 1.1527116, -1.8108567)) * input_b)) + (vec4(0.19192438, 0.5184456, 0.2868818, -1.3273993) * input_c.x)), vec4(0.0));
+    vec4 layer_a_b = max((((vec4(6.7264314, 2.9622838, 2.9098969, 5.9744544) + (mat4x4(vec4(-0.12217721, 0.22763732, -0.004417817, -0.06267596), vec4(-2.4146361, -0.18476139, -3.4558244, 2.9450746), vec4(-5.4860015, 1.4868553, -2.1278694, 0.4854823), vec4(-6.5399365, 3.9464378, -0.38746363, -0.8196625)) * input_a)) + (mat4x4(vec4(-1.5837826, -0.94882554, -1.7528132, 0.15016195), vec4(0.24539638, -0.02962581, -0.09984434, -2.859153), vec4(-0.81128675, -2.2096338, 0.19959958, 0.61256623), vec4(-0.07751021, -2.7617075, -0.27255327, -1.1958808)) * input_b)) + (vec4(1.990514, -0.6359168, -0.31290185, -4.2020493) * input_c.x)), vec4(0.0));
+    vec4 layer_a_c = max((((vec4(3.5223773, -15.221399, -3.4809296, 10.030306) + (mat4x4(vec4(-0.03140591, 0.060427975, 0.15278174, -0.007083143), vec4(-2.6500683, 0.38270378, -3.0651162, -0.8758899), vec4(2.485045, -1.2583921, -3.006661, 1.8098172), vec4(-2.8701901, 2.0259004, -3.5799527, 0.23054957)) * input_a)) + (mat4x4(vec4(-2.3411286, 2.7736285, 0.17103042, -1.0718764), vec4(0.5770534, 0.705651, 1.5821631, 0.113242306), vec4(-1.5114138, 2.9570165, 0.109827146, -2.906127), vec4(0.2477891, -0.49770266, 0.16072541, -2.6521983)) * input_b)) + (vec4(-1.2668568, 10.466823, 4.406043, -5.414743) * input_c.x)), vec4(0.0));
+    float layer_b_a = (1.0 / (1.0 + exp(min(-((((-0.7520336 + dot(vec4(-1.2788893, 1.4166232, -0.63858134, -0.37417185), layer_a_a)) + dot(vec4(0.54287124, 0.1414334, -2.7857668, 0.6133062), layer_a_b)) + dot(vec4(-0.26648676, 0.7075062, -0.83382905, -0.24292463), layer_a_c))), 80.0))));
     return layer_b_a;
 }
 
@@ -273,7 +302,7 @@ vec2 peelnet_weigh(PeelnetPlace place_2, bool counts, vec4 absorbances, vec4 fir
     vec3 _e24 = peelnet_levels(vec3(halves_1, halves_1.y));
     vec2 decoded = _e24.xy;
     vec2 levels_4 = ((place_2.slab < ends) ? decoded : vec2(decoded.x, -1.0));
-    float before_1 = ((((place_2.slab > 0.0) ? sums_2.x : 0.0) + ((place_2.slab > 1.0) ? sums_2.y : 0.0)) + ((place_2.slab > 2.0) ? sums_2.z : 0.0));
+    float before_3 = ((((place_2.slab > 0.0) ? sums_2.x : 0.0) + ((place_2.slab > 1.0) ? sums_2.y : 0.0)) + ((place_2.slab > 2.0) ? sums_2.z : 0.0));
     if (counts) {
         bool _e56 = peelnet_is_kept(place_2.near, levels_4.x);
         local_3 = _e56;
@@ -311,23 +340,23 @@ vec2 peelnet_weigh(PeelnetPlace place_2, bool counts, vec4 absorbances, vec4 fir
     float share_1 = (_e83.low + ((_e83.high - _e83.low) * _e88));
     float at_end = (is_far ? max((_e11 - place_2.absorbance), 0.0) : 0.0);
     float inside_1 = (known ? at_end : (_e83.nearest + (_e83.absorbance * share_1)));
-    return vec2(exp(-((before_1 + inside_1))), (known ? 1.0 : 0.0));
+    return vec2(exp(-((before_3 + inside_1))), (known ? 1.0 : 0.0));
 }
 
-PeelnetStatistics peelnet_statistics(float alpha_3, float zeta_2, vec2 range_2) {
-    PeelnetPlace _e3 = peelnet_place(alpha_3, zeta_2, range_2);
-    vec2 _e4 = peelnet_records(alpha_3, _e3);
-    vec4 _e8 = peelnet_in_slab(_e3.absorbance, _e3.slab, 0.0);
-    vec4 _e12 = peelnet_in_slab(_e4.x, _e3.slab, PEELNET_EMPTY);
-    vec4 _e18 = peelnet_in_slab((_e3.absorbance * _e3.inside), _e3.slab, 0.0);
-    vec4 _e22 = peelnet_in_slab(_e4.y, _e3.slab, PEELNET_EMPTY);
-    return PeelnetStatistics(_e8, _e12, _e22, _e18);
+PeelnetStatistics peelnet_statistics(float alpha_4, float t_1) {
+    PeelnetPlace _e2 = peelnet_place(alpha_4, t_1);
+    vec2 _e3 = peelnet_records(alpha_4, _e2);
+    vec4 _e7 = peelnet_in_slab(_e2.absorbance, _e2.slab, 0.0);
+    vec4 _e11 = peelnet_in_slab(_e3.x, _e2.slab, PEELNET_EMPTY);
+    vec4 _e17 = peelnet_in_slab((_e2.absorbance * _e2.inside), _e2.slab, 0.0);
+    vec4 _e21 = peelnet_in_slab(_e3.y, _e2.slab, PEELNET_EMPTY);
+    return PeelnetStatistics(_e7, _e11, _e21, _e17);
 }
 
-vec2 peelnet_fragment(float alpha_4, float zeta_3, vec2 range_3, vec4 absorbances_1, vec4 nearest_1, vec4 farthest_1, vec4 firsts_1) {
-    PeelnetPlace _e7 = peelnet_place(alpha_4, zeta_3, range_3);
-    vec2 _e11 = peelnet_weigh(_e7, (alpha_4 >= PEELNET_FAINT), absorbances_1, firsts_1, nearest_1, farthest_1, 4.0);
-    return _e11;
+vec2 peelnet_fragment(float alpha_5, float t_2, vec4 absorbances_1, vec4 nearest_1, vec4 farthest_1, vec4 firsts_1) {
+    PeelnetPlace _e6 = peelnet_place(alpha_5, t_2);
+    vec2 _e10 = peelnet_weigh(_e6, (alpha_5 >= PEELNET_FAINT), absorbances_1, firsts_1, nearest_1, farthest_1, 4.0);
+    return _e10;
 }
 
 vec4 peelnet_composite(vec4 sums, float coverage, vec3 transmittance, vec3 background) {
@@ -348,9 +377,9 @@ vec4 peelnet_resolve(vec4 sums_1, float absorbance, vec3 background_1) {
     return _e11;
 }
 
-float peelnet_weight(float root_absorbance_1, float depth_fraction_1, float mean_fraction_1, float share_low_1, float share_high_1, float root_own_1, float half_extent_1, float of_own_1, float of_nearest_1) {
+float peelnet_weight(float root_absorbance_1, float place_fraction_1, float mean_fraction_1, float share_low_1, float share_high_1, float root_own_1, float half_extent_1, float of_own_1, float of_nearest_1) {
     float root = clamp(root_absorbance_1, 0.0, 256.0);
-    float _e39 = peelnet_share(clamp(root_absorbance_1, -29206.338, 29214.236), clamp(depth_fraction_1, -2897.979, 2898.976), clamp(mean_fraction_1, -1500.4199, 1501.4175), clamp(share_low_1, -2251.6072, 2251.9534), clamp(share_high_1, -2285.6619, 2287.3152), clamp(root_own_1, -5866.8115, 5868.4404), clamp(half_extent_1, -1597.7611, 1599.4877), clamp(of_own_1, -1822.701, 1824.4791), clamp(of_nearest_1, -1809.8052, 1811.5852));
+    float _e39 = peelnet_share(clamp(root_absorbance_1, -41646.84, 41657.707), clamp(place_fraction_1, -2860.5364, 2861.6028), clamp(mean_fraction_1, -1577.1843, 1578.2454), clamp(share_low_1, -2064.7026, 2065.022), clamp(share_high_1, -2255.4236, 2257.095), clamp(root_own_1, -5822.1606, 5823.822), clamp(half_extent_1, -1997.7107, 1999.3191), clamp(of_own_1, -1709.69, 1711.5151), clamp(of_nearest_1, -1708.3573, 1710.1793));
     vec2 bounds = clamp(vec2(share_low_1, share_high_1), vec2(0.0), vec2(1.0));
     return exp(((-(root) * root) * mix(bounds.x, bounds.y, _e39)));
 }

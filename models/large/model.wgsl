@@ -3,45 +3,47 @@
 // WGSL, plain WebGPU. Compiled by naga, and run on a GPU against the network at every export.
 // Network: 9-12-1 (Relu hidden, Sigmoid last), 133 parameters, 120 multiply-adds. Recipe large, seed 1, 80 epochs.
 // Answers: transmittance of what lies between a slab's known ends, exp(-absorbance * share) with absorbance = root_absorbance^2 and share in share_low .. share_high.
-// Input 0: root_absorbance (root of the absorbance between the slab's ends), 0.0 .. 15.927986 in training.
-// Input 1: depth_fraction (of the depth between the slab's ends), 0.0 .. 1.0 in training.
-// Input 2: mean_fraction (of the depth between the slab's ends), 0.0 .. 1.0 in training.
+// Input 0: root_absorbance (root of the absorbance between the slab's ends), 0.0 .. 20.264051 in training.
+// Input 1: place_fraction (of the way between the slab's ends), 0.0 .. 1.0 in training.
+// Input 2: mean_fraction (of the way between the slab's ends), 0.0 .. 1.0 in training.
 // Input 3: share_low (of the absorbance between the slab's ends), 0.0 .. 1.0 in training.
 // Input 4: share_high (of the absorbance between the slab's ends), 0.0 .. 1.0 in training.
-// Input 5: root_own (root of the fragment's absorbance), 0.031630483 .. 2.4929142 in training.
-// Input 6: half_extent (half of the depth between the slab's ends, in slabs), 0.00052083336 .. 1.0 in training.
-// Input 7: of_own (absorbance between the ends, of that and the fragment's), 0.0 .. 0.9999888 in training.
+// Input 5: root_own (root of the fragment's absorbance), 0.031630483 .. 2.4013393 in training.
+// Input 6: half_extent (half of the way between the slab's ends, in slabs), 0.00052083336 .. 1.0 in training.
+// Input 7: of_own (absorbance between the ends, of that and the fragment's), 0.0 .. 0.99999017 in training.
 // Input 8: of_nearest (absorbance between the ends, of that and the nearer end's), 0.0 .. 1.0 in training.
-// Trained on 21531714 rows of boxes, cups, foliage, intersecting, opaque-mix, panes, sixteen-025, sixteen-050, sixteen-075, sixteen-085, sixteen-random-alpha, sixteen-random-color, smoke-100, smoke-30, synthetic (dataset b7ad9cb0d2c09dc1638bcd9266d352a93f8e00bc73cd1e178a68bf55c7773289+ea59181067487e28a3ecbe45990ec58875bfc5212a817cbef25c5c9618a9c370).
-// Loss: training 0.000155, validation 0.000167, test 0.000143.
-// Held-out error, mean |T - T_exact|: boxes-held 0.00482, cups-held 0.00254, foliage-held 0.00078, panes-held 0.00016, sixteen-held 0.00063, smoke-held 0.00572.
+// Trained on 21565796 rows of boxes, cups, foliage, intersecting, opaque-mix, panes, sixteen-025, sixteen-050, sixteen-075, sixteen-085, sixteen-random-alpha, sixteen-random-color, smoke-100, smoke-30, synthetic (dataset f0e6c4a7cca08d560f99a5be9cbd1514bf8be352632a347602bf08363695fd29+eb0fb0725f43962450fda44a06f4c27ba969a523c02d556c7eebdda5833c5318).
+// Loss: training 0.000098, validation 0.000091, test 0.000097.
+// Held-out error, mean |T - T_exact|: boxes-held 0.00158, cups-held 0.00160, foliage-held 0.00055, panes-held 0.00017, sixteen-held 0.00036, smoke-held 0.00308.
 //
 // Self-tests, to some roundings of 32 bits; weights and colours also to those of 16-bit targets.
-// peelnet_weight(3.1536086, 0.34473258, 0.33871156, 0.35519254, 0.24246675, 1.3484817, 0.24470124, 0.5180234, 0.22806776) = 0.056587335
-// peelnet_weight(1.9897641, 0.025055587, 0.3786413, 0.595821, 0.28249002, 0.7963256, 0.6240396, 0.40492046, 0.91731685) = 0.10302619
-// peelnet_weight(2.0278628, 0.2162394, 0.7240006, 0.37958002, 0.26558614, 2.0352807, 0.5804378, 0.90978783, 0.04841405) = 0.21207522
+// peelnet_weight(0.46090248, 0.67085797, 0.16887921, 0.7373583, 0.19208878, 0.1129206, 0.12900263, 0.435835, 0.7663156) = 0.8718817
+// peelnet_weight(0.2836532, 0.13589168, 0.26682287, 0.7078695, 0.5534122, 0.8413221, 0.6951227, 0.37161812, 0.9624051) = 0.9452141
+// peelnet_weight(2.5799065, 0.2162394, 0.7240006, 0.37958002, 0.26558614, 1.9607327, 0.5804378, 0.9097891, 0.04841405) = 0.08160464
 // Four fragments of a pixel, near 1.0, far 8.0, background 0.25, 0.5, 0.75:
 //    z 1.0, alpha 0.5, rgb 1.0, 0.0, 0.0: zeta -1.0, weight 1.0
 //    z 2.0, alpha 0.5, rgb 0.0, 1.0, 0.0: zeta -0.33333334, weight 0.5
 //    z 4.0, alpha 0.5, rgb 0.0, 0.0, 1.0: zeta 0.33333334, weight 0.25
 //    z 8.0, alpha 0.9, rgb 1.0, 1.0, 1.0: zeta 1.0, weight 0.125
-//    target range: 1.0, 1.0
+//    target bins_front: 0.08627451, 0.0, 0.08627451, 0.0
+//    target bins_back: 0.0, 0.08627451, 0.0, 0.2901961
 //    target absorbances: 0.6931472, 0.6931472, 0.6931472, 2.302585
-//    target nearest: 64928.0, -3.4101562, -3.4101562, -64768.0
-//    target farthest: -65088.0, 3.4003906, 3.4003906, 65248.0
-//    target firsts: -0.6931472, 0.3630771, 0.3630771, 2.302585
+//    target nearest: 64928.0, -0.46533203, 0.005054474, -64768.0
+//    target farthest: -65088.0, 0.46411133, -0.0050735474, 65248.0
+//    target firsts: -0.6931472, 0.29681972, -0.145463, 2.302585
 //    colour of the pixel: 0.615625, 0.36875, 0.246875
 //
 // How to draw with it. Targets may have 32 bits a channel wherever 16 are named.
 // 0. zeta = peelnet_zeta(z, near, far): z is the distance along the view axis, near and far the range of z that the bounding boxes of the transparent objects in view span, clipped to the camera's. A tight range matters more than anything else you choose. Compute zeta with this function in all passes. Its range is the same for the whole frame: peelnet_zeta_in(z, peelnet_range(near, far)) is the same value, and the range may be passed in.
-// 1. Pass "range": draw all transparent surfaces, in any order. let r = peelnet_pixel_range(zeta);
-//    range: rg8unorm, cleared to 0, blending MAX, from r
-// 2. Pass "statistics": draw all transparent surfaces, in any order. let s = peelnet_statistics(alpha, zeta, range);
+// 1. Pass "range": draw all transparent surfaces, in any order. let bins = peelnet_bins(alpha, zeta);
+//    bins_front: rgba8unorm, cleared to 0, blending ADD, from bins.front
+//    bins_back: rgba8unorm, cleared to 0, blending ADD, from bins.back
+// 2. Pass "statistics": draw all transparent surfaces, in any order. let s = peelnet_statistics(alpha, peelnet_in_pixel(zeta, bins_front, bins_back));
 //    absorbances: rgba16float, cleared to 0, blending ADD, from s.absorbances
 //    nearest: rgba16float, cleared to -65504, blending MAX, from s.nearest
 //    farthest: rgba16float, cleared to -65504, blending MAX, from s.farthest
 //    firsts: rgba16float, cleared to 0, blending ADD, from s.firsts
-// 3. Pass "weights": draw all transparent surfaces, in any order. let w = peelnet_fragment(alpha, zeta, range, absorbances, nearest, farthest, firsts).x;
+// 3. Pass "weights": draw all transparent surfaces, in any order. let w = peelnet_fragment(alpha, peelnet_in_pixel(zeta, bins_front, bins_back), absorbances, nearest, farthest, firsts).x;
 //    sums: rgba16float, cleared to 0, blending ADD, from vec4f(alpha * rgb, alpha) * w
 // 4. Resolve: peelnet_resolve(sums, absorbances.x + absorbances.y + absorbances.z + absorbances.w, background) is the colour of the pixel, and its coverage in alpha.
 // - alpha is opacity, rgb the linear colour that is not multiplied by it. Resolve before tone mapping and encoding.
@@ -100,8 +102,10 @@ fn peelnet_levels(halves: vec3f) -> vec3f {
 
 // Fragments of less opacity are composited, but are never a slab's nearest or farthest.
 const PEELNET_FAINT: f32 = 0.003921569;
-// Levels of the range of depths, less one.
-const PEELNET_RANGE_TOP: f32 = 255.0;
+// What is seen of a bin that has fragments, at least: where little light passes, order still counts a little.
+const PEELNET_LEAST_SEEN: f32 = 0.00390625;
+// Levels of 8 bits that an absorbance of 1 is.
+const PEELNET_BIN_LEVELS: f32 = 32.0;
 // Bins of depth in a slab, and levels of opacity in each, that its nearest and its farthest fragment are kept with.
 const PEELNET_BINS: f32 = 1920.0;
 const PEELNET_OPACITIES: f32 = 32.0;
@@ -140,17 +144,52 @@ struct PeelnetBetween {
     nearest: f32,
 }
 
-// What a fragment writes of the pixel's range, into 8 bits under MAX: its level of depth counted from the far end, rounded down, and
-// from the near end, rounded up.
-fn peelnet_pixel_range(zeta: f32) -> vec2f {
-    let level = PEELNET_RANGE_TOP * (zeta * 0.5 + 0.5);
-    return vec2f(PEELNET_RANGE_TOP - floor(level), ceil(level)) / PEELNET_RANGE_TOP;
+// Absorbances of eight bins of the frame's depth, nearest first, in 8 bits.
+struct PeelnetBins {
+    front: vec4f,
+    back: vec4f,
 }
 
-fn peelnet_place(alpha: f32, zeta: f32, range: vec2f) -> PeelnetPlace {
-    let ends = floor(range * PEELNET_RANGE_TOP + 0.5);
-    let low = PEELNET_RANGE_TOP - ends.x;
-    let t = clamp((PEELNET_RANGE_TOP * (zeta * 0.5 + 0.5) - low) / max(ends.y - low, 1.0), 0.0, 1.0);
+// What a fragment adds to 8-bit targets: its absorbance, in its own bin. Whole levels, so that no order of adding changes a sum.
+fn peelnet_bins(alpha: f32, zeta: f32) -> PeelnetBins {
+    let bin = min(floor(zeta * 4.0 + 4.0), 7.0);
+    // At least one: a bin with any fragment is not empty.
+    let level = clamp(floor(peelnet_absorbance(alpha) * PEELNET_BIN_LEVELS + 0.5), 1.0, 255.0) / 255.0;
+    return PeelnetBins(
+        select(vec4f(0.0), vec4f(level), vec4f(bin) == vec4f(0.0, 1.0, 2.0, 3.0)),
+        select(vec4f(0.0), vec4f(level), vec4f(bin) == vec4f(4.0, 5.0, 6.0, 7.0)),
+    );
+}
+
+// What is let through up to the far end of each of four bins behind an absorbance.
+fn peelnet_passing(before: f32, bins: vec4f) -> vec4f {
+    let two = bins.x + bins.y;
+    let absorbances = vec4f(bins.x, two, two + bins.z, two + bins.z + bins.w);
+    return exp((vec4f(before) + absorbances) * (-255.0 / PEELNET_BIN_LEVELS));
+}
+
+// How much of the pixel's scale each of four bins takes: the root of what is seen of it, and nothing where it is empty.
+fn peelnet_shares(before: vec4f, behind: vec4f, bins: vec4f) -> vec4f {
+    return select(vec4f(0.0), sqrt(max(before - behind, vec4f(PEELNET_LEAST_SEEN))), bins > vec4f(0.0));
+}
+
+// Where a depth lies in its pixel, 0 .. 1, by the absorbances of its bins. Where all are empty, it is the root of the frame's depth.
+fn peelnet_in_pixel(zeta: f32, front: vec4f, back: vec4f) -> f32 {
+    let place = zeta * 4.0 + 4.0;
+    let none = vec4f(0.0);
+    let one = vec4f(1.0);
+    let near = peelnet_passing(0.0, front);
+    let far = peelnet_passing(dot(front, one), back);
+    let of_front = peelnet_shares(vec4f(1.0, near.xyz), near, front);
+    let of_back = peelnet_shares(vec4f(near.w, far.xyz), far, back);
+    let passed = dot(of_front, clamp(vec4f(place) - vec4f(0.0, 1.0, 2.0, 3.0), none, one))
+        + dot(of_back, clamp(vec4f(place) - vec4f(4.0, 5.0, 6.0, 7.0), none, one));
+    let all = dot(of_front + of_back, one);
+    return select(min(passed / max(all, 1e-6), 1.0), sqrt(place * 0.125), all == 0.0);
+}
+
+// t: where in its pixel the fragment lies, 0 .. 1.
+fn peelnet_place(alpha: f32, t: f32) -> PeelnetPlace {
     let b = peelnet_absorbance(alpha);
     let first = select(0.0, 1.0, t >= PEELNET_FIRST_END);
     let passed = first + select(0.0, 1.0, t >= PEELNET_SECOND_END) + select(0.0, 1.0, t >= PEELNET_THIRD_END);
@@ -273,10 +312,10 @@ fn peelnet_weigh(
     return vec2f(exp(-(before + inside)), select(0.0, 1.0, known));
 }
 
-// Where a slab ends and the next begins, in the pixel's range, and the number of the last slab.
-const PEELNET_FIRST_END: f32 = 0.12;
-const PEELNET_SECOND_END: f32 = 0.4;
-const PEELNET_THIRD_END: f32 = 0.75;
+// Where a slab ends and the next begins, in the pixel, and the number of the last slab.
+const PEELNET_FIRST_END: f32 = 0.34;
+const PEELNET_SECOND_END: f32 = 0.63;
+const PEELNET_THIRD_END: f32 = 0.8;
 const PEELNET_LAST_SLAB: f32 = 3.0;
 
 struct PeelnetStatistics {
@@ -289,9 +328,9 @@ struct PeelnetStatistics {
     firsts: vec4f,
 }
 
-// What a fragment adds to its pixel's statistics. range: of the pixel, as the pass before left it.
-fn peelnet_statistics(alpha: f32, zeta: f32, range: vec2f) -> PeelnetStatistics {
-    let place = peelnet_place(alpha, zeta, range);
+// What a fragment adds to its pixel's statistics. t: where in its pixel it lies, as peelnet_in_pixel has it.
+fn peelnet_statistics(alpha: f32, t: f32) -> PeelnetStatistics {
+    let place = peelnet_place(alpha, t);
     let halves = peelnet_records(alpha, place);
     let absorbances = peelnet_in_slab(place.absorbance, place.slab, 0.0);
     let nearest = peelnet_in_slab(halves.x, place.slab, PEELNET_EMPTY);
@@ -303,14 +342,13 @@ fn peelnet_statistics(alpha: f32, zeta: f32, range: vec2f) -> PeelnetStatistics 
 // The weight of a fragment, and whether it is known without the network.
 fn peelnet_fragment(
     alpha: f32,
-    zeta: f32,
-    range: vec2f,
+    t: f32,
     absorbances: vec4f,
     nearest: vec4f,
     farthest: vec4f,
     firsts: vec4f,
 ) -> vec2f {
-    let place = peelnet_place(alpha, zeta, range);
+    let place = peelnet_place(alpha, t);
     return peelnet_weigh(place, alpha >= PEELNET_FAINT, absorbances, firsts, nearest, farthest, 4.0);
 }
 
@@ -334,34 +372,34 @@ fn peelnet_network(between: PeelnetBetween) -> f32 {
 }
 
 // Where between its bounds the share of the absorbance lies that is in front, for inputs as peelnet_network evaluates them.
-fn peelnet_share(root_absorbance: f32, depth_fraction: f32, mean_fraction: f32, share_low: f32, share_high: f32, root_own: f32, half_extent: f32, of_own: f32, of_nearest: f32) -> f32 {
-    let input_a = vec4f(root_absorbance, depth_fraction, mean_fraction, share_low);
+fn peelnet_share(root_absorbance: f32, place_fraction: f32, mean_fraction: f32, share_low: f32, share_high: f32, root_own: f32, half_extent: f32, of_own: f32, of_nearest: f32) -> f32 {
+    let input_a = vec4f(root_absorbance, place_fraction, mean_fraction, share_low);
     let input_b = vec4f(share_high, root_own, half_extent, of_own);
     let input_c = vec4f(of_nearest, 0.0, 0.0, 0.0);
-    let layer_a_a = max(vec4f(2.1840205, -6.0488615, -1.7244382, 4.7277613)
-        + mat4x4f(vec4f(0.047469564, 0.23515935, 0.11767298, 0.20192647), vec4f(-1.7600293, 2.394223, -0.758209, -2.1273522), vec4f(2.0526679, 1.8895667, 2.210894, -4.212481), vec4f(-2.42305, 3.114414, -2.4845653, -3.50623)) * input_a
-        + mat4x4f(vec4f(-0.35380575, 4.11892, -0.80055463, -1.7894613), vec4f(-0.050723393, -0.18910663, 1.6134852, 0.04007925), vec4f(0.1851308, -0.37078544, -0.8427393, -0.83480763), vec4f(-4.397573, -1.7329992, 1.3239111, -2.6379797)) * input_b
-        + vec4f(0.40196586, -0.227467, 0.2835534, 2.2054615) * input_c.x, vec4f(0.0));
-    let layer_a_b = max(vec4f(1.9635522, 4.22529, 1.7789874, 3.2397063)
-        + mat4x4f(vec4f(-0.123949684, 0.1417589, -0.018165613, 0.30577102), vec4f(-2.7712479, -0.37093836, -3.3144624, 0.4114121), vec4f(-1.2387592, 0.27240995, -2.6905491, -0.2897715), vec4f(-3.0422947, 2.8530369, 0.19921339, 1.8955889)) * input_a
-        + mat4x4f(vec4f(-1.7535394, 1.0183004, -2.3712957, 0.010245026), vec4f(0.41370788, -1.842587, -0.02716257, -0.41089702), vec4f(-1.352047, 0.20369291, -0.00036163072, 0.227056), vec4f(-2.7401996, -0.29923275, -0.37736642, -6.4913673)) * input_b
-        + vec4f(7.169313, -4.077658, 1.7808118, 0.07814195) * input_c.x, vec4f(0.0));
-    let layer_a_c = max(vec4f(4.769506, -8.370628, -7.2272587, 1.9382521)
-        + mat4x4f(vec4f(-0.13895983, 0.020408038, -0.14134641, 0.12772618), vec4f(-2.391556, 1.2834508, 0.13731219, -0.86161965), vec4f(1.3833116, -3.3067873, -3.9631188, 0.8292861), vec4f(-2.9982097, -1.9966851, -3.7511098, -3.622401)) * input_a
-        + mat4x4f(vec4f(-1.2489822, 2.1839437, 1.1735235, -2.4171035), vec4f(-0.3166327, -0.66815275, -0.15579033, -1.1183752), vec4f(0.55134714, 0.6089045, -0.21319966, -0.09091094), vec4f(-0.33495626, -0.9323972, 4.1316953, -5.4128723)) * input_b
-        + vec4f(-4.170837, 10.21349, 7.2209086, 6.0569587) * input_c.x, vec4f(0.0));
-    let layer_b_a = 1.0 / (1.0 + exp(min(-(-0.64744765
-        + dot(vec4f(-1.6729233, 1.0259085, -0.40086138, -0.48241943), layer_a_a)
-        + dot(vec4f(0.46246502, 0.4526373, -3.5602195, 1.6483781), layer_a_b)
-        + dot(vec4f(-1.0833257, 0.46139312, -0.53797805, -0.71952), layer_a_c)), 80.0)));
+    let layer_a_a = max(vec4f(3.2663903, -3.662527, -1.4858606, 9.079746)
+        + mat4x4f(vec4f(0.012053977, 0.10597747, -0.05008541, -0.14564426), vec4f(-0.45787275, 1.1609957, -2.4251537, -1.3628559), vec4f(0.14452827, -1.074953, 2.921781, -1.7066478), vec4f(-5.0721173, 2.7570124, -6.907086, 2.6927578)) * input_a
+        + mat4x4f(vec4f(-0.67774475, 5.9952526, 0.84017164, -0.84743696), vec4f(-0.28413337, -0.18752208, -0.9054862, -1.8464173), vec4f(0.09005235, -0.942758, 2.040689, -1.9998521), vec4f(-3.6150825, -3.5769734, 1.1527116, -1.8108567)) * input_b
+        + vec4f(0.19192438, 0.5184456, 0.2868818, -1.3273993) * input_c.x, vec4f(0.0));
+    let layer_a_b = max(vec4f(6.7264314, 2.9622838, 2.9098969, 5.9744544)
+        + mat4x4f(vec4f(-0.12217721, 0.22763732, -0.004417817, -0.06267596), vec4f(-2.4146361, -0.18476139, -3.4558244, 2.9450746), vec4f(-5.4860015, 1.4868553, -2.1278694, 0.4854823), vec4f(-6.5399365, 3.9464378, -0.38746363, -0.8196625)) * input_a
+        + mat4x4f(vec4f(-1.5837826, -0.94882554, -1.7528132, 0.15016195), vec4f(0.24539638, -0.02962581, -0.09984434, -2.859153), vec4f(-0.81128675, -2.2096338, 0.19959958, 0.61256623), vec4f(-0.07751021, -2.7617075, -0.27255327, -1.1958808)) * input_b
+        + vec4f(1.990514, -0.6359168, -0.31290185, -4.2020493) * input_c.x, vec4f(0.0));
+    let layer_a_c = max(vec4f(3.5223773, -15.221399, -3.4809296, 10.030306)
+        + mat4x4f(vec4f(-0.03140591, 0.060427975, 0.15278174, -0.007083143), vec4f(-2.6500683, 0.38270378, -3.0651162, -0.8758899), vec4f(2.485045, -1.2583921, -3.006661, 1.8098172), vec4f(-2.8701901, 2.0259004, -3.5799527, 0.23054957)) * input_a
+        + mat4x4f(vec4f(-2.3411286, 2.7736285, 0.17103042, -1.0718764), vec4f(0.5770534, 0.705651, 1.5821631, 0.113242306), vec4f(-1.5114138, 2.9570165, 0.109827146, -2.906127), vec4f(0.2477891, -0.49770266, 0.16072541, -2.6521983)) * input_b
+        + vec4f(-1.2668568, 10.466823, 4.406043, -5.414743) * input_c.x, vec4f(0.0));
+    let layer_b_a = 1.0 / (1.0 + exp(min(-(-0.7520336
+        + dot(vec4f(-1.2788893, 1.4166232, -0.63858134, -0.37417185), layer_a_a)
+        + dot(vec4f(0.54287124, 0.1414334, -2.7857668, 0.6133062), layer_a_b)
+        + dot(vec4f(-0.26648676, 0.7075062, -0.83382905, -0.24292463), layer_a_c)), 80.0)));
     return layer_b_a;
 }
 
 // Its transmittance, for any finite inputs.
-fn peelnet_weight(root_absorbance: f32, depth_fraction: f32, mean_fraction: f32, share_low: f32, share_high: f32, root_own: f32, half_extent: f32, of_own: f32, of_nearest: f32) -> f32 {
+fn peelnet_weight(root_absorbance: f32, place_fraction: f32, mean_fraction: f32, share_low: f32, share_high: f32, root_own: f32, half_extent: f32, of_own: f32, of_nearest: f32) -> f32 {
     let root = clamp(root_absorbance, 0.0, 256.0);
     let share = peelnet_share(
-        clamp(root_absorbance, -29206.338, 29214.236), clamp(depth_fraction, -2897.979, 2898.976), clamp(mean_fraction, -1500.4199, 1501.4175), clamp(share_low, -2251.6072, 2251.9534), clamp(share_high, -2285.6619, 2287.3152), clamp(root_own, -5866.8115, 5868.4404), clamp(half_extent, -1597.7611, 1599.4877), clamp(of_own, -1822.701, 1824.4791), clamp(of_nearest, -1809.8052, 1811.5852));
+        clamp(root_absorbance, -41646.84, 41657.707), clamp(place_fraction, -2860.5364, 2861.6028), clamp(mean_fraction, -1577.1843, 1578.2454), clamp(share_low, -2064.7026, 2065.022), clamp(share_high, -2255.4236, 2257.095), clamp(root_own, -5822.1606, 5823.822), clamp(half_extent, -1997.7107, 1999.3191), clamp(of_own, -1709.69, 1711.5151), clamp(of_nearest, -1708.3573, 1710.1793));
     let bounds = clamp(vec2f(share_low, share_high), vec2f(0.0), vec2f(1.0));
     return exp(-root * root * mix(bounds.x, bounds.y, share));
 }

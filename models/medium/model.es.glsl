@@ -3,43 +3,45 @@
 // GLSL ES 3.00, WebGL 2. Paste it below #version 300 es and precision highp float; and precision highp int;.
 // Network: 9-13-1 (Relu hidden, Sigmoid last), 144 parameters, 130 multiply-adds. Recipe medium, seed 1, 80 epochs.
 // Answers: transmittance of what lies between a slab's known ends, exp(-absorbance * share) with absorbance = root_absorbance^2 and share in share_low .. share_high.
-// Input 0: root_absorbance (root of the absorbance between the slab's ends), 0.0 .. 17.45139 in training.
-// Input 1: depth_fraction (of the depth between the slab's ends), 0.0 .. 0.99999994 in training.
-// Input 2: mean_fraction (of the depth between the slab's ends), 0.0 .. 1.0 in training.
+// Input 0: root_absorbance (root of the absorbance between the slab's ends), 0.0 .. 20.578093 in training.
+// Input 1: place_fraction (of the way between the slab's ends), 0.0 .. 1.0 in training.
+// Input 2: mean_fraction (of the way between the slab's ends), 0.0 .. 1.0 in training.
 // Input 3: share_low (of the absorbance between the slab's ends), 0.0 .. 1.0 in training.
 // Input 4: share_high (of the absorbance between the slab's ends), 0.0 .. 1.0 in training.
-// Input 5: root_own (root of the fragment's absorbance), 0.031630483 .. 2.4929142 in training.
-// Input 6: half_extent (half of the depth between the slab's ends, in slabs), 0.00052083336 .. 1.0 in training.
-// Input 7: of_own (absorbance between the ends, of that and the fragment's), 0.0 .. 0.99998844 in training.
+// Input 5: root_own (root of the fragment's absorbance), 0.031630483 .. 2.4013393 in training.
+// Input 6: half_extent (half of the way between the slab's ends, in slabs), 0.00052083336 .. 1.0 in training.
+// Input 7: of_own (absorbance between the ends, of that and the fragment's), 0.0 .. 0.9999915 in training.
 // Input 8: of_nearest (absorbance between the ends, of that and the nearer end's), 0.0 .. 1.0 in training.
-// Trained on 21531714 rows of boxes, cups, foliage, intersecting, opaque-mix, panes, sixteen-025, sixteen-050, sixteen-075, sixteen-085, sixteen-random-alpha, sixteen-random-color, smoke-100, smoke-30, synthetic (dataset b7ad9cb0d2c09dc1638bcd9266d352a93f8e00bc73cd1e178a68bf55c7773289+ea59181067487e28a3ecbe45990ec58875bfc5212a817cbef25c5c9618a9c370).
-// Loss: training 0.000188, validation 0.000195, test 0.000177.
-// Held-out error, mean |T - T_exact|: boxes-held 0.00876, cups-held 0.00441, foliage-held 0.00146, panes-held 0.00049, sixteen-held 0.00133, smoke-held 0.00730.
+// Trained on 21565796 rows of boxes, cups, foliage, intersecting, opaque-mix, panes, sixteen-025, sixteen-050, sixteen-075, sixteen-085, sixteen-random-alpha, sixteen-random-color, smoke-100, smoke-30, synthetic (dataset f0e6c4a7cca08d560f99a5be9cbd1514bf8be352632a347602bf08363695fd29+eb0fb0725f43962450fda44a06f4c27ba969a523c02d556c7eebdda5833c5318).
+// Loss: training 0.000154, validation 0.000141, test 0.000152.
+// Held-out error, mean |T - T_exact|: boxes-held 0.00284, cups-held 0.00291, foliage-held 0.00092, panes-held 0.00030, sixteen-held 0.00071, smoke-held 0.00562.
 //
 // Self-tests, to some roundings of 32 bits; weights and colours also to those of 16-bit targets.
-// peelnet_weight(16.283361, 0.36382005, 0.55921507, 0.6518643, 0.0106291175, 0.79744774, 0.85728174, 0.8660552, 0.8008911) = 0.051286396
-// peelnet_weight(2.1800714, 0.025055585, 0.3786413, 0.595821, 0.28249002, 0.7963256, 0.6240396, 0.4049203, 0.91731685) = 0.058918845
-// peelnet_weight(2.221814, 0.21623938, 0.7240006, 0.37958002, 0.26558614, 2.0352807, 0.5804378, 0.9097875, 0.04841405) = 0.15499045
+// peelnet_weight(0.4680453, 0.67085797, 0.16887921, 0.7373583, 0.19208878, 0.1129206, 0.12900263, 0.43583557, 0.7663156) = 0.8542118
+// peelnet_weight(0.2880491, 0.13589168, 0.26682287, 0.7078695, 0.5534122, 0.8413221, 0.6951227, 0.37161863, 0.9624051) = 0.94387513
+// peelnet_weight(2.6198885, 0.2162394, 0.7240006, 0.37958002, 0.26558614, 1.9607327, 0.5804378, 0.9097903, 0.04841405) = 0.079958044
 // Four fragments of a pixel, near 1.0, far 8.0, background 0.25, 0.5, 0.75:
 //    z 1.0, alpha 0.5, rgb 1.0, 0.0, 0.0: zeta -1.0, weight 1.0
 //    z 2.0, alpha 0.5, rgb 0.0, 1.0, 0.0: zeta -0.33333334, weight 0.5
 //    z 4.0, alpha 0.5, rgb 0.0, 0.0, 1.0: zeta 0.33333334, weight 0.25
 //    z 8.0, alpha 0.9, rgb 1.0, 1.0, 1.0: zeta 1.0, weight 0.125
-//    target range: 1.0, 1.0
-//    target absorbances: 0.6931472, 0.6931472, 2.995732, -0.6931472
-//    target nearest: 64928.0, 0.00036168098, 1.4501953, -0.057762265
-//    target farthest: -65088.0, -0.00036287308, 65248.0, 1.9688473
+//    target bins_front: 0.08627451, 0.0, 0.08627451, 0.0
+//    target bins_back: 0.0, 0.08627451, 0.0, 0.2901961
+//    target absorbances: 0.6931472, 1.3862944, 2.302585, -0.6931472
+//    target nearest: 64928.0, 61.40625, -64768.0, -0.17698051
+//    target farthest: -65088.0, 0.30786133, 65248.0, 2.302585
 //    colour of the pixel: 0.615625, 0.36875, 0.246875
 //
 // How to draw with it. Targets may have 32 bits a channel wherever 16 are named.
 // 0. zeta = peelnet_zeta(z, near, far): z is the distance along the view axis, near and far the range of z that the bounding boxes of the transparent objects in view span, clipped to the camera's. A tight range matters more than anything else you choose. Compute zeta with this function in all passes. Its range is the same for the whole frame: peelnet_zeta_in(z, peelnet_range(near, far)) is the same value, and the range may be passed in.
-// 1. Pass "range": draw all transparent surfaces, in any order. vec2 r = peelnet_pixel_range(zeta);
-//    range: rg8unorm, cleared to 0, blending MAX, from r
-// 2. Pass "statistics": draw all transparent surfaces, in any order. PeelnetStatistics s = peelnet_statistics(alpha, zeta, range);
+// 1. Pass "range": draw all transparent surfaces, in any order. PeelnetBins bins = peelnet_bins(alpha, zeta);
+//    bins_front: rgba8unorm, cleared to 0, blending ADD, from bins.front
+//    bins_back: rgba8unorm, cleared to 0, blending ADD, from bins.back
+// 2. Pass "statistics": draw all transparent surfaces, in any order. PeelnetStatistics s = peelnet_statistics(alpha, peelnet_in_pixel(zeta, bins_front, bins_back));
 //    absorbances: rgba16float, cleared to 0, blending ADD, from s.absorbances
 //    nearest: rgba16float, cleared to -65504, -65504, -65504, 0, blending MAX for rgb, ADD for alpha, from s.nearest
 //    farthest: rgba16float, cleared to -65504, -65504, -65504, 0, blending MAX for rgb, ADD for alpha, from s.farthest
-// 3. Pass "weights": draw all transparent surfaces, in any order. float w = peelnet_fragment(alpha, zeta, range, absorbances, nearest, farthest).x;
+// 3. Pass "weights": draw all transparent surfaces, in any order. float w = peelnet_fragment(alpha, peelnet_in_pixel(zeta, bins_front, bins_back), absorbances, nearest, farthest).x;
 //    sums: rgba16float, cleared to 0, blending ADD, from vec4(alpha * rgb, alpha) * w
 // 4. Resolve: peelnet_resolve(sums, absorbances.x + absorbances.y + absorbances.z, background) is the colour of the pixel, and its coverage in alpha.
 // - alpha is opacity, rgb the linear colour that is not multiplied by it. Resolve before tone mapping and encoding.
@@ -70,18 +72,23 @@ struct PeelnetBetween {
     float own;
     float nearest;
 };
+struct PeelnetBins {
+    vec4 front;
+    vec4 back;
+};
 struct PeelnetStatistics {
     vec4 absorbances;
     vec4 nearest;
     vec4 farthest;
 };
 const float PEELNET_FAINT = 0.003921569;
-const float PEELNET_RANGE_TOP = 255.0;
+const float PEELNET_LEAST_SEEN = 0.00390625;
+const float PEELNET_BIN_LEVELS = 32.0;
 const float PEELNET_BINS = 1920.0;
 const float PEELNET_OPACITIES = 32.0;
 const float PEELNET_EMPTY = -65504.0;
-const float PEELNET_FIRST_END = 0.15;
-const float PEELNET_SECOND_END = 0.55;
+const float PEELNET_FIRST_END = 0.5;
+const float PEELNET_SECOND_END = 0.78;
 const float PEELNET_THIRD_END = 1.0;
 const float PEELNET_LAST_SLAB = 2.0;
 
@@ -120,36 +127,58 @@ vec3 peelnet_levels(vec3 halves) {
     return (vec3(30719.5) + (sign(halves) * from_middle_1));
 }
 
-vec2 peelnet_pixel_range(float zeta) {
-    float level = (PEELNET_RANGE_TOP * ((zeta * 0.5) + 0.5));
-    return (vec2((PEELNET_RANGE_TOP - floor(level)), ceil(level)) / vec2(255.0));
+PeelnetBins peelnet_bins(float alpha_1, float zeta) {
+    float bin_1 = min(floor(((zeta * 4.0) + 4.0)), 7.0);
+    float _e9 = peelnet_absorbance(alpha_1);
+    float level = (clamp(floor(((_e9 * PEELNET_BIN_LEVELS) + 0.5)), 1.0, 255.0) / 255.0);
+    return PeelnetBins(mix(vec4(0.0), vec4(level), equal(vec4(bin_1), vec4(0.0, 1.0, 2.0, 3.0))), mix(vec4(0.0), vec4(level), equal(vec4(bin_1), vec4(4.0, 5.0, 6.0, 7.0))));
+}
+
+vec4 peelnet_passing(float before, vec4 bins) {
+    float two = (bins.x + bins.y);
+    vec4 absorbances_2 = vec4(bins.x, two, (two + bins.z), ((two + bins.z) + bins.w));
+    return exp(((vec4(before) + absorbances_2) * -7.96875));
+}
+
+vec4 peelnet_shares(vec4 before_1, vec4 behind, vec4 bins_1) {
+    return mix(vec4(0.0), sqrt(max((before_1 - behind), vec4(0.00390625))), greaterThan(bins_1, vec4(0.0)));
+}
+
+float peelnet_in_pixel(float zeta_1, vec4 front, vec4 back) {
+    float place_3 = ((zeta_1 * 4.0) + 4.0);
+    vec4 none = vec4(0.0);
+    vec4 one = vec4(1.0);
+    vec4 _e12 = peelnet_passing(0.0, front);
+    vec4 _e14 = peelnet_passing(dot(front, one), back);
+    vec4 _e18 = peelnet_shares(vec4(1.0, _e12.xyz), _e12, front);
+    vec4 _e22 = peelnet_shares(vec4(_e12.w, _e14.xyz), _e14, back);
+    float passed = (dot(_e18, clamp((vec4(place_3) - vec4(0.0, 1.0, 2.0, 3.0)), none, one)) + dot(_e22, clamp((vec4(place_3) - vec4(4.0, 5.0, 6.0, 7.0)), none, one)));
+    float all_ = dot((_e18 + _e22), one);
+    return ((all_ == 0.0) ? sqrt((place_3 * 0.125)) : min((passed / max(all_, 1e-6)), 1.0));
 }
 
 float peelnet_of_slab(vec4 values, float slab) {
     return ((slab >= 2.0) ? ((slab == 3.0) ? values.w : values.z) : ((slab == 1.0) ? values.y : values.x));
 }
 
-PeelnetPlace peelnet_place(float alpha_1, float zeta_1, vec2 range_1) {
-    vec2 ends_1 = floor(((range_1 * PEELNET_RANGE_TOP) + vec2(0.5)));
-    float low = (PEELNET_RANGE_TOP - ends_1.x);
-    float t = clamp((((PEELNET_RANGE_TOP * ((zeta_1 * 0.5) + 0.5)) - low) / max((ends_1.y - low), 1.0)), 0.0, 1.0);
-    float _e27 = peelnet_absorbance(alpha_1);
+PeelnetPlace peelnet_place(float alpha_2, float t) {
+    float _e2 = peelnet_absorbance(alpha_2);
     float first_1 = ((t >= PEELNET_FIRST_END) ? 1.0 : 0.0);
-    float passed = ((first_1 + ((t >= PEELNET_SECOND_END) ? 1.0 : 0.0)) + ((t >= PEELNET_THIRD_END) ? 1.0 : 0.0));
-    float slab_2 = min(passed, PEELNET_LAST_SLAB);
-    float _e52 = peelnet_of_slab(vec4(0.0, 0.15, 0.55, 1.0), slab_2);
-    float _e58 = peelnet_of_slab(vec4(0.15, 0.55, 1.0, 1.0), slab_2);
-    float inside = ((t - _e52) / (_e58 - _e52));
-    float bin_1 = min(floor((inside * PEELNET_BINS)), 1919.0);
-    float opacity = floor((((_e27 / (_e27 + 1.0)) * 32.9375) + 0.5));
-    float near_2 = (((1919.0 - bin_1) * PEELNET_OPACITIES) + opacity);
-    return PeelnetPlace(_e27, slab_2, ((2.0 * inside) - 1.0), bin_1, near_2, ((bin_1 * PEELNET_OPACITIES) + opacity));
+    float passed_1 = ((first_1 + ((t >= PEELNET_SECOND_END) ? 1.0 : 0.0)) + ((t >= PEELNET_THIRD_END) ? 1.0 : 0.0));
+    float slab_2 = min(passed_1, PEELNET_LAST_SLAB);
+    float _e27 = peelnet_of_slab(vec4(0.0, 0.5, 0.78, 1.0), slab_2);
+    float _e33 = peelnet_of_slab(vec4(0.5, 0.78, 1.0, 1.0), slab_2);
+    float inside = ((t - _e27) / (_e33 - _e27));
+    float bin_2 = min(floor((inside * PEELNET_BINS)), 1919.0);
+    float opacity = floor((((_e2 / (_e2 + 1.0)) * 32.9375) + 0.5));
+    float near_2 = (((1919.0 - bin_2) * PEELNET_OPACITIES) + opacity);
+    return PeelnetPlace(_e2, slab_2, ((2.0 * inside) - 1.0), bin_2, near_2, ((bin_2 * PEELNET_OPACITIES) + opacity));
 }
 
-vec2 peelnet_records(float alpha_2, PeelnetPlace place) {
+vec2 peelnet_records(float alpha_3, PeelnetPlace place) {
     vec3 _e6 = peelnet_halves(vec3(place.near, place.far, place.far));
     vec2 levels_3 = _e6.xy;
-    return ((alpha_2 < PEELNET_FAINT) ? vec2(-65504.0) : levels_3);
+    return ((alpha_3 < PEELNET_FAINT) ? vec2(-65504.0) : levels_3);
 }
 
 vec2 peelnet_absorbances_of(vec2 levels_1) {
@@ -177,8 +206,8 @@ PeelnetBetween peelnet_between(PeelnetPlace place_1, float total, float first, v
     float near_bin = (1919.0 - near_back);
     float near_level = (levels_2.x + ((near_bin - near_back) * PEELNET_OPACITIES));
     vec2 _e23 = peelnet_absorbances_of(levels_2);
-    bool all_ = (_e23.x > (others - (((0.019354839 * (1.0 + _e23.x)) * (1.0 + _e23.x)) + noise)));
-    float near_3 = ((near_bin > place_1.bin) ? 0.0 : (all_ ? others : _e23.x));
+    bool all_1 = (_e23.x > (others - (((0.019354839 * (1.0 + _e23.x)) * (1.0 + _e23.x)) + noise)));
+    float near_3 = ((near_bin > place_1.bin) ? 0.0 : (all_1 ? others : _e23.x));
     float far_bin = floor((levels_2.y * 0.03125));
     if (!((levels_2.y == near_level))) {
         local = (levels_2.y < 0.0);
@@ -219,11 +248,11 @@ PeelnetBetween peelnet_between(PeelnetPlace place_1, float total, float first, v
     float depth = clamp((moment / max(rest, noise)), _e126, _e127);
     float _e129 = begin;
     float mean = clamp(((depth - _e129) * per_extent), 0.0, 1.0);
-    bool before = (x < mean);
-    float bound = ((before ? (1.0 - mean) : (x - mean)) / max((before ? (1.0 - x) : x), 1e-6));
-    float low_1 = (before ? 0.0 : bound);
-    float high = (before ? bound : 1.0);
-    return PeelnetBetween(max(rest, 0.0), x, mean, low_1, high, (0.5 * extent_1), b, in_front);
+    bool before_2 = (x < mean);
+    float bound = ((before_2 ? (1.0 - mean) : (x - mean)) / max((before_2 ? (1.0 - x) : x), 1e-6));
+    float low = (before_2 ? 0.0 : bound);
+    float high = (before_2 ? bound : 1.0);
+    return PeelnetBetween(max(rest, 0.0), x, mean, low, high, (0.5 * extent_1), b, in_front);
 }
 
 bool peelnet_is_kept(float own, float kept) {
@@ -238,15 +267,15 @@ bool peelnet_is_kept(float own, float kept) {
     return _e12;
 }
 
-float peelnet_share(float root_absorbance, float depth_fraction, float mean_fraction, float share_low, float share_high, float root_own, float half_extent, float of_own, float of_nearest) {
-    vec4 input_a = vec4(root_absorbance, depth_fraction, mean_fraction, share_low);
+float peelnet_share(float root_absorbance, float place_fraction, float mean_fraction, float share_low, float share_high, float root_own, float half_extent, float of_own, float of_nearest) {
+    vec4 input_a = vec4(root_absorbance, place_fraction, mean_fraction, share_low);
     vec4 input_b = vec4(share_high, root_own, half_extent, of_own);
     vec4 input_c = vec4(of_nearest, 0.0, 0.0, 0.0);
-    vec4 layer_a_a = max((((vec4(-7.8299437, -15.342194, 0.7899789, 5.084168) + (mat4x4(vec4(-0.030301591, -0.26336005, 0.1976722, -0.13335763), vec4(1.5359082, -0.2576824, -1.6266366, -1.7296202), vec4(2.858296, 0.5257957, 3.9529676, -2.1316454), vec4(2.313127, -0.28756613, -4.5240865, -1.5110507)) * input_a)) + (mat4x4(vec4(2.645565, 4.7929263, -0.31652603, -2.5357666), vec4(0.18327999, 0.16753511, 0.8548817, 0.07050302), vec4(-0.5859307, -0.42890432, -1.1898764, 0.038513016), vec4(-1.5631098, 4.320991, 0.02013639, 0.68381625)) * input_b)) + (vec4(6.169015, 9.7711525, -1.8237177, -2.902477) * input_c.x)), vec4(0.0));
-    vec4 layer_a_b = max((((vec4(-0.056096848, -6.2827024, 4.1700563, -2.4750228) + (mat4x4(vec4(0.27370048, 0.28845698, 0.20436543, 0.3619668), vec4(-2.3681653, 0.3482534, 0.23430997, 2.732464), vec4(-5.3407526, -0.63629556, -1.0746495, 2.3536394), vec4(-3.8603914, 0.12791331, -0.45456228, 5.9015656)) * input_a)) + (mat4x4(vec4(-0.867533, 8.151419, 1.0559157, 1.5190593), vec4(-0.2719766, -0.30769503, -2.0830827, -1.0552342), vec4(-0.73117185, -0.023912247, -0.39265317, -0.20668666), vec4(-2.6781938, -3.997511, -1.7308788, -3.3702617)) * input_b)) + (vec4(7.0889573, 1.0543331, -1.4649847, -0.8110969) * input_c.x)), vec4(0.0));
-    vec4 layer_a_c = max((((vec4(5.3821745, 1.0863866, -10.217251, 5.7755594) + (mat4x4(vec4(0.23707242, -0.021978196, -0.227118, 0.09719893), vec4(-0.67079777, -3.6361659, -0.4186634, -2.5180435), vec4(-6.567668, -2.3149612, -1.3682718, 2.1036632), vec4(-0.714263, 0.58801544, -3.739539, -3.8015375)) * input_a)) + (mat4x4(vec4(-2.7505894, -2.3761983, 1.5206145, -1.8596971), vec4(-0.29575026, -0.035495974, 0.31698033, -0.4226034), vec4(-0.24417458, -0.0817929, -0.18891679, 0.89242953), vec4(0.036170304, -0.6145611, 8.75431, -5.037242)) * input_b)) + (vec4(0.7685123, 2.4962108, 4.325833, -0.8753592) * input_c.x)), vec4(0.0));
-    vec4 layer_a_d = max((((vec4(-4.3250794, 0.0, 0.0, 0.0) + (mat4x4(vec4(-0.082812324, 0.0, 0.0, 0.0), vec4(-1.4353815, 0.0, 0.0, 0.0), vec4(-0.021786027, 0.0, 0.0, 0.0), vec4(-0.15885846, 0.0, 0.0, 0.0)) * input_a)) + (mat4x4(vec4(0.7902528, 0.0, 0.0, 0.0), vec4(1.4010568, 0.0, 0.0, 0.0), vec4(-0.12134637, 0.0, 0.0, 0.0), vec4(-0.36671594, 0.0, 0.0, 0.0)) * input_b)) + (vec4(3.7742128, 0.0, 0.0, 0.0) * input_c.x)), vec4(0.0));
-    float layer_b_a = (1.0 / (1.0 + exp(min(-(((((0.04314765 + dot(vec4(-0.34363174, 0.5977151, -0.35501206, -1.3362901), layer_a_a)) + dot(vec4(-0.7479184, 1.812323, 0.21468325, 1.2415205), layer_a_b)) + dot(vec4(0.28031895, -4.971313, -0.5942379, -0.7475037), layer_a_c)) + (0.23738182 * layer_a_d.x))), 80.0))));
+    vec4 layer_a_a = max((((vec4(-4.4447308, -12.45114, 8.63079, 7.5926037) + (mat4x4(vec4(-0.12916751, -0.23378025, -0.10377829, -0.0032638134), vec4(1.354511, 0.9276267, -1.2646163, -1.6568592), vec4(-0.82462096, -1.9950281, -3.9118786, -1.4565431), vec4(3.2038007, 4.383598, -0.8401924, -3.6072054)) * input_a)) + (mat4x4(vec4(1.8355491, 2.1030173, -0.7947235, -2.9951174), vec4(-1.0995852, 0.11974643, 0.6503592, -0.75954574), vec4(-0.5860802, 0.68915147, 2.2590032, -0.1360034), vec4(-1.2311825, 1.5109367, -1.4606112, -2.9613047)) * input_b)) + (vec4(7.0193987, 11.105025, -5.049142, -0.9499334) * input_c.x)), vec4(0.0));
+    vec4 layer_a_b = max((((vec4(-2.6988559, -4.7071157, 9.237288, -6.3001018) + (mat4x4(vec4(0.023053532, 0.04718157, 0.044737656, 0.109394185), vec4(0.7300395, 2.2387753, 1.2386922, 2.5425243), vec4(-2.4763205, 4.491425, -3.356138, -2.5029612), vec4(1.6975176, 4.209012, -3.6952815, 1.9296347)) * input_a)) + (mat4x4(vec4(-0.56269085, -0.16258518, 0.12546627, 8.098411), vec4(1.4600329, -0.44837016, -2.3623722, -0.3876797), vec4(-0.22685207, -0.20758802, 0.08817118, -0.0030232838), vec4(-0.14744744, -0.8561807, -3.838719, -2.9670765)) * input_b)) + (vec4(4.151487, -0.062713705, -2.7409785, 0.8227554) * input_c.x)), vec4(0.0));
+    vec4 layer_a_c = max((((vec4(0.67285746, -1.6168736, -3.1445649, 4.7891827) + (mat4x4(vec4(-0.06522365, 0.050646577, 0.016327161, 0.1985529), vec4(-4.1948524, -3.435037, 1.4223378, 0.18305767), vec4(-0.36326778, -1.3971599, -4.0033393, 1.2647372), vec4(-3.6689143, -2.3201852, -4.2180443, -7.7647033)) * input_a)) + (mat4x4(vec4(-0.24650317, -0.44864386, -3.7051437, -2.1363556), vec4(0.7545351, 0.1321389, 0.56673694, -0.08666467), vec4(0.32870808, -1.445469, 0.82238525, -1.2126167), vec4(0.46502697, -0.96150774, 5.759959, -2.3914046)) * input_b)) + (vec4(2.7547433, 5.516411, 2.421212, -1.0949827) * input_c.x)), vec4(0.0));
+    vec4 layer_a_d = max((((vec4(-2.004455, 0.0, 0.0, 0.0) + (mat4x4(vec4(0.126243, 0.0, 0.0, 0.0), vec4(-0.6331345, 0.0, 0.0, 0.0), vec4(-1.3468734, 0.0, 0.0, 0.0), vec4(-1.3279333, 0.0, 0.0, 0.0)) * input_a)) + (mat4x4(vec4(0.534626, 0.0, 0.0, 0.0), vec4(0.2766432, 0.0, 0.0, 0.0), vec4(-4.0262127, 0.0, 0.0, 0.0), vec4(-1.5510436, 0.0, 0.0, 0.0)) * input_b)) + (vec4(6.103607, 0.0, 0.0, 0.0) * input_c.x)), vec4(0.0));
+    float layer_b_a = (1.0 / (1.0 + exp(min(-(((((0.0043100906 + dot(vec4(-0.7046865, 0.6445005, -0.3890984, -1.2050401), layer_a_a)) + dot(vec4(-0.41688615, 1.3796486, 0.42346632, 1.6046996), layer_a_b)) + dot(vec4(0.425834, -0.97543293, -0.50007266, -0.6161687), layer_a_c)) + (0.42453918 * layer_a_d.x))), 80.0))));
     return layer_b_a;
 }
 
@@ -271,7 +300,7 @@ vec2 peelnet_weigh(PeelnetPlace place_2, bool counts, vec4 absorbances, vec4 fir
     vec3 _e24 = peelnet_levels(vec3(halves_1, halves_1.y));
     vec2 decoded = _e24.xy;
     vec2 levels_4 = ((place_2.slab < ends) ? decoded : vec2(decoded.x, -1.0));
-    float before_1 = ((((place_2.slab > 0.0) ? sums_2.x : 0.0) + ((place_2.slab > 1.0) ? sums_2.y : 0.0)) + ((place_2.slab > 2.0) ? sums_2.z : 0.0));
+    float before_3 = ((((place_2.slab > 0.0) ? sums_2.x : 0.0) + ((place_2.slab > 1.0) ? sums_2.y : 0.0)) + ((place_2.slab > 2.0) ? sums_2.z : 0.0));
     if (counts) {
         bool _e56 = peelnet_is_kept(place_2.near, levels_4.x);
         local_3 = _e56;
@@ -309,24 +338,24 @@ vec2 peelnet_weigh(PeelnetPlace place_2, bool counts, vec4 absorbances, vec4 fir
     float share_1 = (_e83.low + ((_e83.high - _e83.low) * _e88));
     float at_end = (is_far ? max((_e11 - place_2.absorbance), 0.0) : 0.0);
     float inside_1 = (known ? at_end : (_e83.nearest + (_e83.absorbance * share_1)));
-    return vec2(exp(-((before_1 + inside_1))), (known ? 1.0 : 0.0));
+    return vec2(exp(-((before_3 + inside_1))), (known ? 1.0 : 0.0));
 }
 
-PeelnetStatistics peelnet_statistics(float alpha_3, float zeta_2, vec2 range_2) {
-    PeelnetPlace _e3 = peelnet_place(alpha_3, zeta_2, range_2);
-    vec2 _e4 = peelnet_records(alpha_3, _e3);
-    vec4 _e8 = peelnet_in_slab(_e3.absorbance, _e3.slab, 0.0);
-    vec4 _e12 = peelnet_in_slab(_e4.x, _e3.slab, PEELNET_EMPTY);
-    vec4 _e18 = peelnet_in_slab((_e3.absorbance * _e3.inside), _e3.slab, 0.0);
-    vec4 _e22 = peelnet_in_slab(_e4.y, _e3.slab, PEELNET_EMPTY);
-    return PeelnetStatistics(vec4(_e8.xyz, _e18.x), vec4(_e12.xyz, _e18.y), vec4(_e22.xyz, _e18.z));
+PeelnetStatistics peelnet_statistics(float alpha_4, float t_1) {
+    PeelnetPlace _e2 = peelnet_place(alpha_4, t_1);
+    vec2 _e3 = peelnet_records(alpha_4, _e2);
+    vec4 _e7 = peelnet_in_slab(_e2.absorbance, _e2.slab, 0.0);
+    vec4 _e11 = peelnet_in_slab(_e3.x, _e2.slab, PEELNET_EMPTY);
+    vec4 _e17 = peelnet_in_slab((_e2.absorbance * _e2.inside), _e2.slab, 0.0);
+    vec4 _e21 = peelnet_in_slab(_e3.y, _e2.slab, PEELNET_EMPTY);
+    return PeelnetStatistics(vec4(_e7.xyz, _e17.x), vec4(_e11.xyz, _e17.y), vec4(_e21.xyz, _e17.z));
 }
 
-vec2 peelnet_fragment(float alpha_4, float zeta_3, vec2 range_3, vec4 absorbances_1, vec4 nearest_1, vec4 farthest_1) {
-    PeelnetPlace _e6 = peelnet_place(alpha_4, zeta_3, range_3);
+vec2 peelnet_fragment(float alpha_5, float t_2, vec4 absorbances_1, vec4 nearest_1, vec4 farthest_1) {
+    PeelnetPlace _e5 = peelnet_place(alpha_5, t_2);
     vec4 firsts_1 = vec4(absorbances_1.w, nearest_1.w, farthest_1.w, 0.0);
-    vec2 _e15 = peelnet_weigh(_e6, (alpha_4 >= PEELNET_FAINT), absorbances_1, firsts_1, nearest_1, farthest_1, 3.0);
-    return _e15;
+    vec2 _e14 = peelnet_weigh(_e5, (alpha_5 >= PEELNET_FAINT), absorbances_1, firsts_1, nearest_1, farthest_1, 3.0);
+    return _e14;
 }
 
 vec4 peelnet_composite(vec4 sums, float coverage, vec3 transmittance, vec3 background) {
@@ -347,9 +376,9 @@ vec4 peelnet_resolve(vec4 sums_1, float absorbance, vec3 background_1) {
     return _e11;
 }
 
-float peelnet_weight(float root_absorbance_1, float depth_fraction_1, float mean_fraction_1, float share_low_1, float share_high_1, float root_own_1, float half_extent_1, float of_own_1, float of_nearest_1) {
+float peelnet_weight(float root_absorbance_1, float place_fraction_1, float mean_fraction_1, float share_low_1, float share_high_1, float root_own_1, float half_extent_1, float of_own_1, float of_nearest_1) {
     float root = clamp(root_absorbance_1, 0.0, 256.0);
-    float _e39 = peelnet_share(clamp(root_absorbance_1, -33515.53, 33524.61), clamp(depth_fraction_1, -2900.8486, 2901.8472), clamp(mean_fraction_1, -1424.977, 1425.9756), clamp(share_low_1, -2180.186, 2180.5244), clamp(share_high_1, -2203.1848, 2204.8484), clamp(root_own_1, -5846.649, 5848.278), clamp(half_extent_1, -1496.9746, 1498.7451), clamp(of_own_1, -1645.7856, 1647.6011), clamp(of_nearest_1, -1628.5925, 1630.4063));
+    float _e39 = peelnet_share(clamp(root_absorbance_1, -42631.15, 42642.266), clamp(place_fraction_1, -2872.5894, 2873.6938), clamp(mean_fraction_1, -1648.2158, 1649.3127), clamp(share_low_1, -2004.671, 2004.9794), clamp(share_high_1, -2257.1475, 2258.8218), clamp(root_own_1, -5799.9727, 5801.623), clamp(half_extent_1, -1960.336, 1961.962), clamp(of_own_1, -1633.816, 1635.652), clamp(of_nearest_1, -1636.6312, 1638.464));
     vec2 bounds = clamp(vec2(share_low_1, share_high_1), vec2(0.0), vec2(1.0));
     return exp(((-(root) * root) * mix(bounds.x, bounds.y, _e39)));
 }

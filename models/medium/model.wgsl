@@ -3,43 +3,45 @@
 // WGSL, plain WebGPU. Compiled by naga, and run on a GPU against the network at every export.
 // Network: 9-13-1 (Relu hidden, Sigmoid last), 144 parameters, 130 multiply-adds. Recipe medium, seed 1, 80 epochs.
 // Answers: transmittance of what lies between a slab's known ends, exp(-absorbance * share) with absorbance = root_absorbance^2 and share in share_low .. share_high.
-// Input 0: root_absorbance (root of the absorbance between the slab's ends), 0.0 .. 17.45139 in training.
-// Input 1: depth_fraction (of the depth between the slab's ends), 0.0 .. 0.99999994 in training.
-// Input 2: mean_fraction (of the depth between the slab's ends), 0.0 .. 1.0 in training.
+// Input 0: root_absorbance (root of the absorbance between the slab's ends), 0.0 .. 20.578093 in training.
+// Input 1: place_fraction (of the way between the slab's ends), 0.0 .. 1.0 in training.
+// Input 2: mean_fraction (of the way between the slab's ends), 0.0 .. 1.0 in training.
 // Input 3: share_low (of the absorbance between the slab's ends), 0.0 .. 1.0 in training.
 // Input 4: share_high (of the absorbance between the slab's ends), 0.0 .. 1.0 in training.
-// Input 5: root_own (root of the fragment's absorbance), 0.031630483 .. 2.4929142 in training.
-// Input 6: half_extent (half of the depth between the slab's ends, in slabs), 0.00052083336 .. 1.0 in training.
-// Input 7: of_own (absorbance between the ends, of that and the fragment's), 0.0 .. 0.99998844 in training.
+// Input 5: root_own (root of the fragment's absorbance), 0.031630483 .. 2.4013393 in training.
+// Input 6: half_extent (half of the way between the slab's ends, in slabs), 0.00052083336 .. 1.0 in training.
+// Input 7: of_own (absorbance between the ends, of that and the fragment's), 0.0 .. 0.9999915 in training.
 // Input 8: of_nearest (absorbance between the ends, of that and the nearer end's), 0.0 .. 1.0 in training.
-// Trained on 21531714 rows of boxes, cups, foliage, intersecting, opaque-mix, panes, sixteen-025, sixteen-050, sixteen-075, sixteen-085, sixteen-random-alpha, sixteen-random-color, smoke-100, smoke-30, synthetic (dataset b7ad9cb0d2c09dc1638bcd9266d352a93f8e00bc73cd1e178a68bf55c7773289+ea59181067487e28a3ecbe45990ec58875bfc5212a817cbef25c5c9618a9c370).
-// Loss: training 0.000188, validation 0.000195, test 0.000177.
-// Held-out error, mean |T - T_exact|: boxes-held 0.00876, cups-held 0.00441, foliage-held 0.00146, panes-held 0.00049, sixteen-held 0.00133, smoke-held 0.00730.
+// Trained on 21565796 rows of boxes, cups, foliage, intersecting, opaque-mix, panes, sixteen-025, sixteen-050, sixteen-075, sixteen-085, sixteen-random-alpha, sixteen-random-color, smoke-100, smoke-30, synthetic (dataset f0e6c4a7cca08d560f99a5be9cbd1514bf8be352632a347602bf08363695fd29+eb0fb0725f43962450fda44a06f4c27ba969a523c02d556c7eebdda5833c5318).
+// Loss: training 0.000154, validation 0.000141, test 0.000152.
+// Held-out error, mean |T - T_exact|: boxes-held 0.00284, cups-held 0.00291, foliage-held 0.00092, panes-held 0.00030, sixteen-held 0.00071, smoke-held 0.00562.
 //
 // Self-tests, to some roundings of 32 bits; weights and colours also to those of 16-bit targets.
-// peelnet_weight(16.283361, 0.36382005, 0.55921507, 0.6518643, 0.0106291175, 0.79744774, 0.85728174, 0.8660552, 0.8008911) = 0.051286396
-// peelnet_weight(2.1800714, 0.025055585, 0.3786413, 0.595821, 0.28249002, 0.7963256, 0.6240396, 0.4049203, 0.91731685) = 0.058918845
-// peelnet_weight(2.221814, 0.21623938, 0.7240006, 0.37958002, 0.26558614, 2.0352807, 0.5804378, 0.9097875, 0.04841405) = 0.15499045
+// peelnet_weight(0.4680453, 0.67085797, 0.16887921, 0.7373583, 0.19208878, 0.1129206, 0.12900263, 0.43583557, 0.7663156) = 0.8542118
+// peelnet_weight(0.2880491, 0.13589168, 0.26682287, 0.7078695, 0.5534122, 0.8413221, 0.6951227, 0.37161863, 0.9624051) = 0.94387513
+// peelnet_weight(2.6198885, 0.2162394, 0.7240006, 0.37958002, 0.26558614, 1.9607327, 0.5804378, 0.9097903, 0.04841405) = 0.079958044
 // Four fragments of a pixel, near 1.0, far 8.0, background 0.25, 0.5, 0.75:
 //    z 1.0, alpha 0.5, rgb 1.0, 0.0, 0.0: zeta -1.0, weight 1.0
 //    z 2.0, alpha 0.5, rgb 0.0, 1.0, 0.0: zeta -0.33333334, weight 0.5
 //    z 4.0, alpha 0.5, rgb 0.0, 0.0, 1.0: zeta 0.33333334, weight 0.25
 //    z 8.0, alpha 0.9, rgb 1.0, 1.0, 1.0: zeta 1.0, weight 0.125
-//    target range: 1.0, 1.0
-//    target absorbances: 0.6931472, 0.6931472, 2.995732, -0.6931472
-//    target nearest: 64928.0, 0.00036168098, 1.4501953, -0.057762265
-//    target farthest: -65088.0, -0.00036287308, 65248.0, 1.9688473
+//    target bins_front: 0.08627451, 0.0, 0.08627451, 0.0
+//    target bins_back: 0.0, 0.08627451, 0.0, 0.2901961
+//    target absorbances: 0.6931472, 1.3862944, 2.302585, -0.6931472
+//    target nearest: 64928.0, 61.40625, -64768.0, -0.17698051
+//    target farthest: -65088.0, 0.30786133, 65248.0, 2.302585
 //    colour of the pixel: 0.615625, 0.36875, 0.246875
 //
 // How to draw with it. Targets may have 32 bits a channel wherever 16 are named.
 // 0. zeta = peelnet_zeta(z, near, far): z is the distance along the view axis, near and far the range of z that the bounding boxes of the transparent objects in view span, clipped to the camera's. A tight range matters more than anything else you choose. Compute zeta with this function in all passes. Its range is the same for the whole frame: peelnet_zeta_in(z, peelnet_range(near, far)) is the same value, and the range may be passed in.
-// 1. Pass "range": draw all transparent surfaces, in any order. let r = peelnet_pixel_range(zeta);
-//    range: rg8unorm, cleared to 0, blending MAX, from r
-// 2. Pass "statistics": draw all transparent surfaces, in any order. let s = peelnet_statistics(alpha, zeta, range);
+// 1. Pass "range": draw all transparent surfaces, in any order. let bins = peelnet_bins(alpha, zeta);
+//    bins_front: rgba8unorm, cleared to 0, blending ADD, from bins.front
+//    bins_back: rgba8unorm, cleared to 0, blending ADD, from bins.back
+// 2. Pass "statistics": draw all transparent surfaces, in any order. let s = peelnet_statistics(alpha, peelnet_in_pixel(zeta, bins_front, bins_back));
 //    absorbances: rgba16float, cleared to 0, blending ADD, from s.absorbances
 //    nearest: rgba16float, cleared to -65504, -65504, -65504, 0, blending MAX for rgb, ADD for alpha, from s.nearest
 //    farthest: rgba16float, cleared to -65504, -65504, -65504, 0, blending MAX for rgb, ADD for alpha, from s.farthest
-// 3. Pass "weights": draw all transparent surfaces, in any order. let w = peelnet_fragment(alpha, zeta, range, absorbances, nearest, farthest).x;
+// 3. Pass "weights": draw all transparent surfaces, in any order. let w = peelnet_fragment(alpha, peelnet_in_pixel(zeta, bins_front, bins_back), absorbances, nearest, farthest).x;
 //    sums: rgba16float, cleared to 0, blending ADD, from vec4f(alpha * rgb, alpha) * w
 // 4. Resolve: peelnet_resolve(sums, absorbances.x + absorbances.y + absorbances.z, background) is the colour of the pixel, and its coverage in alpha.
 // - alpha is opacity, rgb the linear colour that is not multiplied by it. Resolve before tone mapping and encoding.
@@ -98,8 +100,10 @@ fn peelnet_levels(halves: vec3f) -> vec3f {
 
 // Fragments of less opacity are composited, but are never a slab's nearest or farthest.
 const PEELNET_FAINT: f32 = 0.003921569;
-// Levels of the range of depths, less one.
-const PEELNET_RANGE_TOP: f32 = 255.0;
+// What is seen of a bin that has fragments, at least: where little light passes, order still counts a little.
+const PEELNET_LEAST_SEEN: f32 = 0.00390625;
+// Levels of 8 bits that an absorbance of 1 is.
+const PEELNET_BIN_LEVELS: f32 = 32.0;
 // Bins of depth in a slab, and levels of opacity in each, that its nearest and its farthest fragment are kept with.
 const PEELNET_BINS: f32 = 1920.0;
 const PEELNET_OPACITIES: f32 = 32.0;
@@ -138,17 +142,52 @@ struct PeelnetBetween {
     nearest: f32,
 }
 
-// What a fragment writes of the pixel's range, into 8 bits under MAX: its level of depth counted from the far end, rounded down, and
-// from the near end, rounded up.
-fn peelnet_pixel_range(zeta: f32) -> vec2f {
-    let level = PEELNET_RANGE_TOP * (zeta * 0.5 + 0.5);
-    return vec2f(PEELNET_RANGE_TOP - floor(level), ceil(level)) / PEELNET_RANGE_TOP;
+// Absorbances of eight bins of the frame's depth, nearest first, in 8 bits.
+struct PeelnetBins {
+    front: vec4f,
+    back: vec4f,
 }
 
-fn peelnet_place(alpha: f32, zeta: f32, range: vec2f) -> PeelnetPlace {
-    let ends = floor(range * PEELNET_RANGE_TOP + 0.5);
-    let low = PEELNET_RANGE_TOP - ends.x;
-    let t = clamp((PEELNET_RANGE_TOP * (zeta * 0.5 + 0.5) - low) / max(ends.y - low, 1.0), 0.0, 1.0);
+// What a fragment adds to 8-bit targets: its absorbance, in its own bin. Whole levels, so that no order of adding changes a sum.
+fn peelnet_bins(alpha: f32, zeta: f32) -> PeelnetBins {
+    let bin = min(floor(zeta * 4.0 + 4.0), 7.0);
+    // At least one: a bin with any fragment is not empty.
+    let level = clamp(floor(peelnet_absorbance(alpha) * PEELNET_BIN_LEVELS + 0.5), 1.0, 255.0) / 255.0;
+    return PeelnetBins(
+        select(vec4f(0.0), vec4f(level), vec4f(bin) == vec4f(0.0, 1.0, 2.0, 3.0)),
+        select(vec4f(0.0), vec4f(level), vec4f(bin) == vec4f(4.0, 5.0, 6.0, 7.0)),
+    );
+}
+
+// What is let through up to the far end of each of four bins behind an absorbance.
+fn peelnet_passing(before: f32, bins: vec4f) -> vec4f {
+    let two = bins.x + bins.y;
+    let absorbances = vec4f(bins.x, two, two + bins.z, two + bins.z + bins.w);
+    return exp((vec4f(before) + absorbances) * (-255.0 / PEELNET_BIN_LEVELS));
+}
+
+// How much of the pixel's scale each of four bins takes: the root of what is seen of it, and nothing where it is empty.
+fn peelnet_shares(before: vec4f, behind: vec4f, bins: vec4f) -> vec4f {
+    return select(vec4f(0.0), sqrt(max(before - behind, vec4f(PEELNET_LEAST_SEEN))), bins > vec4f(0.0));
+}
+
+// Where a depth lies in its pixel, 0 .. 1, by the absorbances of its bins. Where all are empty, it is the root of the frame's depth.
+fn peelnet_in_pixel(zeta: f32, front: vec4f, back: vec4f) -> f32 {
+    let place = zeta * 4.0 + 4.0;
+    let none = vec4f(0.0);
+    let one = vec4f(1.0);
+    let near = peelnet_passing(0.0, front);
+    let far = peelnet_passing(dot(front, one), back);
+    let of_front = peelnet_shares(vec4f(1.0, near.xyz), near, front);
+    let of_back = peelnet_shares(vec4f(near.w, far.xyz), far, back);
+    let passed = dot(of_front, clamp(vec4f(place) - vec4f(0.0, 1.0, 2.0, 3.0), none, one))
+        + dot(of_back, clamp(vec4f(place) - vec4f(4.0, 5.0, 6.0, 7.0), none, one));
+    let all = dot(of_front + of_back, one);
+    return select(min(passed / max(all, 1e-6), 1.0), sqrt(place * 0.125), all == 0.0);
+}
+
+// t: where in its pixel the fragment lies, 0 .. 1.
+fn peelnet_place(alpha: f32, t: f32) -> PeelnetPlace {
     let b = peelnet_absorbance(alpha);
     let first = select(0.0, 1.0, t >= PEELNET_FIRST_END);
     let passed = first + select(0.0, 1.0, t >= PEELNET_SECOND_END) + select(0.0, 1.0, t >= PEELNET_THIRD_END);
@@ -271,9 +310,9 @@ fn peelnet_weigh(
     return vec2f(exp(-(before + inside)), select(0.0, 1.0, known));
 }
 
-// Where a slab ends and the next begins, in the pixel's range, and the number of the last slab.
-const PEELNET_FIRST_END: f32 = 0.15;
-const PEELNET_SECOND_END: f32 = 0.55;
+// Where a slab ends and the next begins, in the pixel, and the number of the last slab.
+const PEELNET_FIRST_END: f32 = 0.5;
+const PEELNET_SECOND_END: f32 = 0.78;
 const PEELNET_THIRD_END: f32 = 1.0;
 const PEELNET_LAST_SLAB: f32 = 2.0;
 
@@ -286,9 +325,9 @@ struct PeelnetStatistics {
     farthest: vec4f,
 }
 
-// What a fragment adds to its pixel's statistics. range: of the pixel, as the pass before left it.
-fn peelnet_statistics(alpha: f32, zeta: f32, range: vec2f) -> PeelnetStatistics {
-    let place = peelnet_place(alpha, zeta, range);
+// What a fragment adds to its pixel's statistics. t: where in its pixel it lies, as peelnet_in_pixel has it.
+fn peelnet_statistics(alpha: f32, t: f32) -> PeelnetStatistics {
+    let place = peelnet_place(alpha, t);
     let halves = peelnet_records(alpha, place);
     let absorbances = peelnet_in_slab(place.absorbance, place.slab, 0.0);
     let nearest = peelnet_in_slab(halves.x, place.slab, PEELNET_EMPTY);
@@ -302,8 +341,8 @@ fn peelnet_statistics(alpha: f32, zeta: f32, range: vec2f) -> PeelnetStatistics 
 }
 
 // The weight of a fragment, and whether it is known without the network.
-fn peelnet_fragment(alpha: f32, zeta: f32, range: vec2f, absorbances: vec4f, nearest: vec4f, farthest: vec4f) -> vec2f {
-    let place = peelnet_place(alpha, zeta, range);
+fn peelnet_fragment(alpha: f32, t: f32, absorbances: vec4f, nearest: vec4f, farthest: vec4f) -> vec2f {
+    let place = peelnet_place(alpha, t);
     let firsts = vec4f(absorbances.w, nearest.w, farthest.w, 0.0);
     return peelnet_weigh(place, alpha >= PEELNET_FAINT, absorbances, firsts, nearest, farthest, 3.0);
 }
@@ -328,39 +367,39 @@ fn peelnet_network(between: PeelnetBetween) -> f32 {
 }
 
 // Where between its bounds the share of the absorbance lies that is in front, for inputs as peelnet_network evaluates them.
-fn peelnet_share(root_absorbance: f32, depth_fraction: f32, mean_fraction: f32, share_low: f32, share_high: f32, root_own: f32, half_extent: f32, of_own: f32, of_nearest: f32) -> f32 {
-    let input_a = vec4f(root_absorbance, depth_fraction, mean_fraction, share_low);
+fn peelnet_share(root_absorbance: f32, place_fraction: f32, mean_fraction: f32, share_low: f32, share_high: f32, root_own: f32, half_extent: f32, of_own: f32, of_nearest: f32) -> f32 {
+    let input_a = vec4f(root_absorbance, place_fraction, mean_fraction, share_low);
     let input_b = vec4f(share_high, root_own, half_extent, of_own);
     let input_c = vec4f(of_nearest, 0.0, 0.0, 0.0);
-    let layer_a_a = max(vec4f(-7.8299437, -15.342194, 0.7899789, 5.084168)
-        + mat4x4f(vec4f(-0.030301591, -0.26336005, 0.1976722, -0.13335763), vec4f(1.5359082, -0.2576824, -1.6266366, -1.7296202), vec4f(2.858296, 0.5257957, 3.9529676, -2.1316454), vec4f(2.313127, -0.28756613, -4.5240865, -1.5110507)) * input_a
-        + mat4x4f(vec4f(2.645565, 4.7929263, -0.31652603, -2.5357666), vec4f(0.18327999, 0.16753511, 0.8548817, 0.07050302), vec4f(-0.5859307, -0.42890432, -1.1898764, 0.038513016), vec4f(-1.5631098, 4.320991, 0.02013639, 0.68381625)) * input_b
-        + vec4f(6.169015, 9.7711525, -1.8237177, -2.902477) * input_c.x, vec4f(0.0));
-    let layer_a_b = max(vec4f(-0.056096848, -6.2827024, 4.1700563, -2.4750228)
-        + mat4x4f(vec4f(0.27370048, 0.28845698, 0.20436543, 0.3619668), vec4f(-2.3681653, 0.3482534, 0.23430997, 2.732464), vec4f(-5.3407526, -0.63629556, -1.0746495, 2.3536394), vec4f(-3.8603914, 0.12791331, -0.45456228, 5.9015656)) * input_a
-        + mat4x4f(vec4f(-0.867533, 8.151419, 1.0559157, 1.5190593), vec4f(-0.2719766, -0.30769503, -2.0830827, -1.0552342), vec4f(-0.73117185, -0.023912247, -0.39265317, -0.20668666), vec4f(-2.6781938, -3.997511, -1.7308788, -3.3702617)) * input_b
-        + vec4f(7.0889573, 1.0543331, -1.4649847, -0.8110969) * input_c.x, vec4f(0.0));
-    let layer_a_c = max(vec4f(5.3821745, 1.0863866, -10.217251, 5.7755594)
-        + mat4x4f(vec4f(0.23707242, -0.021978196, -0.227118, 0.09719893), vec4f(-0.67079777, -3.6361659, -0.4186634, -2.5180435), vec4f(-6.567668, -2.3149612, -1.3682718, 2.1036632), vec4f(-0.714263, 0.58801544, -3.739539, -3.8015375)) * input_a
-        + mat4x4f(vec4f(-2.7505894, -2.3761983, 1.5206145, -1.8596971), vec4f(-0.29575026, -0.035495974, 0.31698033, -0.4226034), vec4f(-0.24417458, -0.0817929, -0.18891679, 0.89242953), vec4f(0.036170304, -0.6145611, 8.75431, -5.037242)) * input_b
-        + vec4f(0.7685123, 2.4962108, 4.325833, -0.8753592) * input_c.x, vec4f(0.0));
-    let layer_a_d = max(vec4f(-4.3250794, 0.0, 0.0, 0.0)
-        + mat4x4f(vec4f(-0.082812324, 0.0, 0.0, 0.0), vec4f(-1.4353815, 0.0, 0.0, 0.0), vec4f(-0.021786027, 0.0, 0.0, 0.0), vec4f(-0.15885846, 0.0, 0.0, 0.0)) * input_a
-        + mat4x4f(vec4f(0.7902528, 0.0, 0.0, 0.0), vec4f(1.4010568, 0.0, 0.0, 0.0), vec4f(-0.12134637, 0.0, 0.0, 0.0), vec4f(-0.36671594, 0.0, 0.0, 0.0)) * input_b
-        + vec4f(3.7742128, 0.0, 0.0, 0.0) * input_c.x, vec4f(0.0));
-    let layer_b_a = 1.0 / (1.0 + exp(min(-(0.04314765
-        + dot(vec4f(-0.34363174, 0.5977151, -0.35501206, -1.3362901), layer_a_a)
-        + dot(vec4f(-0.7479184, 1.812323, 0.21468325, 1.2415205), layer_a_b)
-        + dot(vec4f(0.28031895, -4.971313, -0.5942379, -0.7475037), layer_a_c)
-        + 0.23738182 * layer_a_d.x), 80.0)));
+    let layer_a_a = max(vec4f(-4.4447308, -12.45114, 8.63079, 7.5926037)
+        + mat4x4f(vec4f(-0.12916751, -0.23378025, -0.10377829, -0.0032638134), vec4f(1.354511, 0.9276267, -1.2646163, -1.6568592), vec4f(-0.82462096, -1.9950281, -3.9118786, -1.4565431), vec4f(3.2038007, 4.383598, -0.8401924, -3.6072054)) * input_a
+        + mat4x4f(vec4f(1.8355491, 2.1030173, -0.7947235, -2.9951174), vec4f(-1.0995852, 0.11974643, 0.6503592, -0.75954574), vec4f(-0.5860802, 0.68915147, 2.2590032, -0.1360034), vec4f(-1.2311825, 1.5109367, -1.4606112, -2.9613047)) * input_b
+        + vec4f(7.0193987, 11.105025, -5.049142, -0.9499334) * input_c.x, vec4f(0.0));
+    let layer_a_b = max(vec4f(-2.6988559, -4.7071157, 9.237288, -6.3001018)
+        + mat4x4f(vec4f(0.023053532, 0.04718157, 0.044737656, 0.109394185), vec4f(0.7300395, 2.2387753, 1.2386922, 2.5425243), vec4f(-2.4763205, 4.491425, -3.356138, -2.5029612), vec4f(1.6975176, 4.209012, -3.6952815, 1.9296347)) * input_a
+        + mat4x4f(vec4f(-0.56269085, -0.16258518, 0.12546627, 8.098411), vec4f(1.4600329, -0.44837016, -2.3623722, -0.3876797), vec4f(-0.22685207, -0.20758802, 0.08817118, -0.0030232838), vec4f(-0.14744744, -0.8561807, -3.838719, -2.9670765)) * input_b
+        + vec4f(4.151487, -0.062713705, -2.7409785, 0.8227554) * input_c.x, vec4f(0.0));
+    let layer_a_c = max(vec4f(0.67285746, -1.6168736, -3.1445649, 4.7891827)
+        + mat4x4f(vec4f(-0.06522365, 0.050646577, 0.016327161, 0.1985529), vec4f(-4.1948524, -3.435037, 1.4223378, 0.18305767), vec4f(-0.36326778, -1.3971599, -4.0033393, 1.2647372), vec4f(-3.6689143, -2.3201852, -4.2180443, -7.7647033)) * input_a
+        + mat4x4f(vec4f(-0.24650317, -0.44864386, -3.7051437, -2.1363556), vec4f(0.7545351, 0.1321389, 0.56673694, -0.08666467), vec4f(0.32870808, -1.445469, 0.82238525, -1.2126167), vec4f(0.46502697, -0.96150774, 5.759959, -2.3914046)) * input_b
+        + vec4f(2.7547433, 5.516411, 2.421212, -1.0949827) * input_c.x, vec4f(0.0));
+    let layer_a_d = max(vec4f(-2.004455, 0.0, 0.0, 0.0)
+        + mat4x4f(vec4f(0.126243, 0.0, 0.0, 0.0), vec4f(-0.6331345, 0.0, 0.0, 0.0), vec4f(-1.3468734, 0.0, 0.0, 0.0), vec4f(-1.3279333, 0.0, 0.0, 0.0)) * input_a
+        + mat4x4f(vec4f(0.534626, 0.0, 0.0, 0.0), vec4f(0.2766432, 0.0, 0.0, 0.0), vec4f(-4.0262127, 0.0, 0.0, 0.0), vec4f(-1.5510436, 0.0, 0.0, 0.0)) * input_b
+        + vec4f(6.103607, 0.0, 0.0, 0.0) * input_c.x, vec4f(0.0));
+    let layer_b_a = 1.0 / (1.0 + exp(min(-(0.0043100906
+        + dot(vec4f(-0.7046865, 0.6445005, -0.3890984, -1.2050401), layer_a_a)
+        + dot(vec4f(-0.41688615, 1.3796486, 0.42346632, 1.6046996), layer_a_b)
+        + dot(vec4f(0.425834, -0.97543293, -0.50007266, -0.6161687), layer_a_c)
+        + 0.42453918 * layer_a_d.x), 80.0)));
     return layer_b_a;
 }
 
 // Its transmittance, for any finite inputs.
-fn peelnet_weight(root_absorbance: f32, depth_fraction: f32, mean_fraction: f32, share_low: f32, share_high: f32, root_own: f32, half_extent: f32, of_own: f32, of_nearest: f32) -> f32 {
+fn peelnet_weight(root_absorbance: f32, place_fraction: f32, mean_fraction: f32, share_low: f32, share_high: f32, root_own: f32, half_extent: f32, of_own: f32, of_nearest: f32) -> f32 {
     let root = clamp(root_absorbance, 0.0, 256.0);
     let share = peelnet_share(
-        clamp(root_absorbance, -33515.53, 33524.61), clamp(depth_fraction, -2900.8486, 2901.8472), clamp(mean_fraction, -1424.977, 1425.9756), clamp(share_low, -2180.186, 2180.5244), clamp(share_high, -2203.1848, 2204.8484), clamp(root_own, -5846.649, 5848.278), clamp(half_extent, -1496.9746, 1498.7451), clamp(of_own, -1645.7856, 1647.6011), clamp(of_nearest, -1628.5925, 1630.4062));
+        clamp(root_absorbance, -42631.15, 42642.266), clamp(place_fraction, -2872.5894, 2873.6938), clamp(mean_fraction, -1648.2158, 1649.3127), clamp(share_low, -2004.671, 2004.9794), clamp(share_high, -2257.1475, 2258.8218), clamp(root_own, -5799.9727, 5801.623), clamp(half_extent, -1960.336, 1961.962), clamp(of_own, -1633.816, 1635.652), clamp(of_nearest, -1636.6312, 1638.464));
     let bounds = clamp(vec2f(share_low, share_high), vec2f(0.0), vec2f(1.0));
     return exp(-root * root * mix(bounds.x, bounds.y, share));
 }

@@ -3,39 +3,41 @@
 // HLSL, shader model 6.0.
 // Network: 5-1 (Relu hidden, Sigmoid last), 6 parameters, 5 multiply-adds. Recipe small, seed 1, 40 epochs.
 // Answers: transmittance of what lies between a slab's known ends, exp(-absorbance * share) with absorbance = root_absorbance^2 and share in share_low .. share_high.
-// Input 0: root_absorbance (root of the absorbance between the slab's ends), 0.0 .. 18.285723 in training.
-// Input 1: depth_fraction (of the depth between the slab's ends), 0.0 .. 1.0 in training.
-// Input 2: mean_fraction (of the depth between the slab's ends), 0.0 .. 1.0 in training.
+// Input 0: root_absorbance (root of the absorbance between the slab's ends), 0.0 .. 20.908148 in training.
+// Input 1: place_fraction (of the way between the slab's ends), 0.0 .. 1.0 in training.
+// Input 2: mean_fraction (of the way between the slab's ends), 0.0 .. 1.0 in training.
 // Input 3: share_low (of the absorbance between the slab's ends), 0.0 .. 1.0 in training.
 // Input 4: share_high (of the absorbance between the slab's ends), 0.0 .. 1.0 in training.
-// Trained on 21531714 rows of boxes, cups, foliage, intersecting, opaque-mix, panes, sixteen-025, sixteen-050, sixteen-075, sixteen-085, sixteen-random-alpha, sixteen-random-color, smoke-100, smoke-30, synthetic (dataset b7ad9cb0d2c09dc1638bcd9266d352a93f8e00bc73cd1e178a68bf55c7773289+ea59181067487e28a3ecbe45990ec58875bfc5212a817cbef25c5c9618a9c370).
-// Loss: training 0.000240, validation 0.000233, test 0.000223.
-// Held-out error, mean |T - T_exact|: boxes-held 0.01103, cups-held 0.00539, foliage-held 0.00253, panes-held 0.00058, sixteen-held 0.00294, smoke-held 0.00818.
+// Trained on 21565796 rows of boxes, cups, foliage, intersecting, opaque-mix, panes, sixteen-025, sixteen-050, sixteen-075, sixteen-085, sixteen-random-alpha, sixteen-random-color, smoke-100, smoke-30, synthetic (dataset f0e6c4a7cca08d560f99a5be9cbd1514bf8be352632a347602bf08363695fd29+eb0fb0725f43962450fda44a06f4c27ba969a523c02d556c7eebdda5833c5318).
+// Loss: training 0.000185, validation 0.000181, test 0.000178.
+// Held-out error, mean |T - T_exact|: boxes-held 0.00414, cups-held 0.00373, foliage-held 0.00152, panes-held 0.00058, sixteen-held 0.00136, smoke-held 0.00635.
 //
 // Self-tests, to some roundings of 32 bits; weights and colours also to those of 16-bit targets.
-// peelnet_weight(7.116623, 0.014353275, 0.21181071, 0.010463357, 0.22229642) = 0.059675418
-// peelnet_weight(2.7908742, 0.3421247, 0.95406777, 0.022867262, 0.49329907) = 0.6849483
-// peelnet_weight(3.2184267, 0.5225114, 0.08770603, 0.111551285, 0.022744834) = 0.6955632
+// peelnet_weight(8.137245, 0.014353275, 0.21181071, 0.010463357, 0.22229642) = 0.22439188
+// peelnet_weight(3.191124, 0.3421247, 0.95406777, 0.022867262, 0.49329907) = 0.4897623
+// peelnet_weight(3.6799936, 0.5225114, 0.08770603, 0.111551285, 0.022744834) = 0.3066788
 // Four fragments of a pixel, near 1.0, far 8.0, background 0.25, 0.5, 0.75:
 //    z 1.0, alpha 0.5, rgb 1.0, 0.0, 0.0: zeta -1.0, weight 1.0
 //    z 2.0, alpha 0.5, rgb 0.0, 1.0, 0.0: zeta -0.33333334, weight 0.5
 //    z 4.0, alpha 0.5, rgb 0.0, 0.0, 1.0: zeta 0.33333334, weight 0.25
 //    z 8.0, alpha 0.9, rgb 1.0, 1.0, 1.0: zeta 1.0, weight 0.125
-//    target range: 1.0, 1.0
-//    target absorbances: 0.6931472, 0.6931472, 2.995732, -0.6931472
-//    target nearest: 64928.0, -0.00017380714, 0.061920166, -65088.0
-//    target firsts: 0.033007007, 2.0715358
+//    target bins_front: 0.08627451, 0.0, 0.08627451, 0.0
+//    target bins_back: 0.0, 0.08627451, 0.0, 0.2901961
+//    target absorbances: 0.6931472, 1.3862944, 2.302585, -0.6931472
+//    target nearest: 64928.0, 1014.5, -64768.0, -65088.0
+//    target firsts: -0.16223454, 2.302585
 //    colour of the pixel: 0.615625, 0.36875, 0.246875
 //
 // How to draw with it. Targets may have 32 bits a channel wherever 16 are named.
 // 0. zeta = peelnet_zeta(z, near, far): z is the distance along the view axis, near and far the range of z that the bounding boxes of the transparent objects in view span, clipped to the camera's. A tight range matters more than anything else you choose. Compute zeta with this function in all passes. Its range is the same for the whole frame: peelnet_zeta_in(z, peelnet_range(near, far)) is the same value, and the range may be passed in.
-// 1. Pass "range": draw all transparent surfaces, in any order. float2 r = peelnet_pixel_range(zeta);
-//    range: rg8unorm, cleared to 0, blending MAX, from r
-// 2. Pass "statistics": draw all transparent surfaces, in any order. PeelnetStatistics s = peelnet_statistics(alpha, zeta, range);
+// 1. Pass "range": draw all transparent surfaces, in any order. PeelnetBins bins = peelnet_bins(alpha, zeta);
+//    bins_front: rgba8unorm, cleared to 0, blending ADD, from bins.front
+//    bins_back: rgba8unorm, cleared to 0, blending ADD, from bins.back
+// 2. Pass "statistics": draw all transparent surfaces, in any order. PeelnetStatistics s = peelnet_statistics(alpha, peelnet_in_pixel(zeta, bins_front, bins_back));
 //    absorbances: rgba16float, cleared to 0, blending ADD, from s.absorbances
 //    nearest: rgba16float, cleared to -65504, blending MAX, from s.nearest
 //    firsts: rg16float, cleared to 0, blending ADD, from s.firsts
-// 3. Pass "weights": draw all transparent surfaces, in any order. float w = peelnet_fragment(alpha, zeta, range, absorbances, nearest, firsts).x;
+// 3. Pass "weights": draw all transparent surfaces, in any order. float w = peelnet_fragment(alpha, peelnet_in_pixel(zeta, bins_front, bins_back), absorbances, nearest, firsts).x;
 //    sums: rgba16float, cleared to 0, blending ADD, from float4(alpha * rgb, alpha) * w
 // 4. Resolve: peelnet_resolve(sums, absorbances.x + absorbances.y + absorbances.z, background) is the colour of the pixel, and its coverage in alpha.
 // - alpha is opacity, rgb the linear colour that is not multiplied by it. Resolve before tone mapping and encoding.
@@ -69,6 +71,11 @@ struct PeelnetBetween {
     float nearest;
 };
 
+struct PeelnetBins {
+    float4 front;
+    float4 back;
+};
+
 struct PeelnetStatistics {
     float4 absorbances;
     float4 nearest;
@@ -78,12 +85,13 @@ struct PeelnetStatistics {
 };
 
 static const float PEELNET_FAINT = 0.003921569;
-static const float PEELNET_RANGE_TOP = 255.0;
+static const float PEELNET_LEAST_SEEN = 0.00390625;
+static const float PEELNET_BIN_LEVELS = 32.0;
 static const float PEELNET_BINS = 1920.0;
 static const float PEELNET_OPACITIES = 32.0;
 static const float PEELNET_EMPTY = -65504.0;
-static const float PEELNET_FIRST_END = 0.15;
-static const float PEELNET_SECOND_END = 0.5;
+static const float PEELNET_FIRST_END = 0.525;
+static const float PEELNET_SECOND_END = 0.745;
 static const float PEELNET_THIRD_END = 1.0;
 static const float PEELNET_LAST_SLAB = 2.0;
 
@@ -140,10 +148,46 @@ float3 peelnet_levels(float3 halves)
     return ((30719.5).xxx + (sign(halves) * from_middle_1));
 }
 
-float2 peelnet_pixel_range(float zeta)
+PeelnetBins ConstructPeelnetBins(float4 arg0, float4 arg1) {
+    PeelnetBins ret = (PeelnetBins)0;
+    ret.front = arg0;
+    ret.back = arg1;
+    return ret;
+}
+
+PeelnetBins peelnet_bins(float alpha_1, float zeta)
 {
-    float level = (PEELNET_RANGE_TOP * ((zeta * 0.5) + 0.5));
-    return (float2((PEELNET_RANGE_TOP - floor(level)), ceil(level)) / (255.0).xx);
+    float bin_1 = min(floor(((zeta * 4.0) + 4.0)), 7.0);
+    const float _e9 = peelnet_absorbance(alpha_1);
+    float level = (clamp(floor(((_e9 * PEELNET_BIN_LEVELS) + 0.5)), 1.0, 255.0) / 255.0);
+    const PeelnetBins peelnetbins = ConstructPeelnetBins((((bin_1).xxxx == float4(0.0, 1.0, 2.0, 3.0)) ? (level).xxxx : (0.0).xxxx), (((bin_1).xxxx == float4(4.0, 5.0, 6.0, 7.0)) ? (level).xxxx : (0.0).xxxx));
+    return peelnetbins;
+}
+
+float4 peelnet_passing(float before, float4 bins)
+{
+    float two = (bins.x + bins.y);
+    float4 absorbances_2 = float4(bins.x, two, (two + bins.z), ((two + bins.z) + bins.w));
+    return exp((((before).xxxx + absorbances_2) * -7.96875));
+}
+
+float4 peelnet_shares(float4 before_1, float4 behind, float4 bins_1)
+{
+    return ((bins_1 > (0.0).xxxx) ? sqrt(max((before_1 - behind), (0.00390625).xxxx)) : (0.0).xxxx);
+}
+
+float peelnet_in_pixel(float zeta_1, float4 front, float4 back)
+{
+    float place_3 = ((zeta_1 * 4.0) + 4.0);
+    float4 none = (0.0).xxxx;
+    float4 one = (1.0).xxxx;
+    const float4 _e12 = peelnet_passing(0.0, front);
+    const float4 _e14 = peelnet_passing(dot(front, one), back);
+    const float4 _e18 = peelnet_shares(float4(1.0, _e12.xyz), _e12, front);
+    const float4 _e22 = peelnet_shares(float4(_e12.w, _e14.xyz), _e14, back);
+    float passed = (dot(_e18, clamp(((place_3).xxxx - float4(0.0, 1.0, 2.0, 3.0)), none, one)) + dot(_e22, clamp(((place_3).xxxx - float4(4.0, 5.0, 6.0, 7.0)), none, one)));
+    float all_ = dot((_e18 + _e22), one);
+    return ((all_ == 0.0) ? sqrt((place_3 * 0.125)) : min((passed / max(all_, 1e-6)), 1.0));
 }
 
 float peelnet_of_slab(float4 values, float slab)
@@ -162,30 +206,27 @@ PeelnetPlace ConstructPeelnetPlace(float arg0, float arg1, float arg2, float arg
     return ret;
 }
 
-PeelnetPlace peelnet_place(float alpha_1, float zeta_1, float2 range_1)
+PeelnetPlace peelnet_place(float alpha_2, float t)
 {
-    float2 ends_1 = floor(((range_1 * PEELNET_RANGE_TOP) + (0.5).xx));
-    float low = (PEELNET_RANGE_TOP - ends_1.x);
-    float t = clamp((((PEELNET_RANGE_TOP * ((zeta_1 * 0.5) + 0.5)) - low) / max((ends_1.y - low), 1.0)), 0.0, 1.0);
-    const float _e27 = peelnet_absorbance(alpha_1);
+    const float _e2 = peelnet_absorbance(alpha_2);
     float first_1 = ((t >= PEELNET_FIRST_END) ? 1.0 : 0.0);
-    float passed = ((first_1 + ((t >= PEELNET_SECOND_END) ? 1.0 : 0.0)) + ((t >= PEELNET_THIRD_END) ? 1.0 : 0.0));
-    float slab_2 = min(passed, PEELNET_LAST_SLAB);
-    const float _e52 = peelnet_of_slab(float4(0.0, 0.15, 0.5, 1.0), slab_2);
-    const float _e58 = peelnet_of_slab(float4(0.15, 0.5, 1.0, 1.0), slab_2);
-    float inside = ((t - _e52) / (_e58 - _e52));
-    float bin_1 = min(floor((inside * PEELNET_BINS)), 1919.0);
-    float opacity = floor((((_e27 / (_e27 + 1.0)) * 32.9375) + 0.5));
-    float near_2 = (((1919.0 - bin_1) * PEELNET_OPACITIES) + opacity);
-    const PeelnetPlace peelnetplace = ConstructPeelnetPlace(_e27, slab_2, ((2.0 * inside) - 1.0), bin_1, near_2, ((bin_1 * PEELNET_OPACITIES) + opacity));
+    float passed_1 = ((first_1 + ((t >= PEELNET_SECOND_END) ? 1.0 : 0.0)) + ((t >= PEELNET_THIRD_END) ? 1.0 : 0.0));
+    float slab_2 = min(passed_1, PEELNET_LAST_SLAB);
+    const float _e27 = peelnet_of_slab(float4(0.0, 0.525, 0.745, 1.0), slab_2);
+    const float _e33 = peelnet_of_slab(float4(0.525, 0.745, 1.0, 1.0), slab_2);
+    float inside = ((t - _e27) / (_e33 - _e27));
+    float bin_2 = min(floor((inside * PEELNET_BINS)), 1919.0);
+    float opacity = floor((((_e2 / (_e2 + 1.0)) * 32.9375) + 0.5));
+    float near_2 = (((1919.0 - bin_2) * PEELNET_OPACITIES) + opacity);
+    const PeelnetPlace peelnetplace = ConstructPeelnetPlace(_e2, slab_2, ((2.0 * inside) - 1.0), bin_2, near_2, ((bin_2 * PEELNET_OPACITIES) + opacity));
     return peelnetplace;
 }
 
-float2 peelnet_records(float alpha_2, PeelnetPlace place)
+float2 peelnet_records(float alpha_3, PeelnetPlace place)
 {
     const float3 _e6 = peelnet_halves(float3(place.near, place.far, place.far));
     float2 levels_3 = _e6.xy;
-    return ((alpha_2 < PEELNET_FAINT) ? (-65504.0).xx : levels_3);
+    return ((alpha_3 < PEELNET_FAINT) ? (-65504.0).xx : levels_3);
 }
 
 float2 peelnet_absorbances_of(float2 levels_1)
@@ -231,8 +272,8 @@ PeelnetBetween peelnet_between(PeelnetPlace place_1, float total, float first, f
     float near_bin = (1919.0 - near_back);
     float near_level = (levels_2.x + ((near_bin - near_back) * PEELNET_OPACITIES));
     const float2 _e23 = peelnet_absorbances_of(levels_2);
-    bool all_ = (_e23.x > (others - (((0.019354839 * (1.0 + _e23.x)) * (1.0 + _e23.x)) + noise_)));
-    float near_3 = ((near_bin > place_1.bin) ? 0.0 : (all_ ? others : _e23.x));
+    bool all_1 = (_e23.x > (others - (((0.019354839 * (1.0 + _e23.x)) * (1.0 + _e23.x)) + noise_)));
+    float near_3 = ((near_bin > place_1.bin) ? 0.0 : (all_1 ? others : _e23.x));
     float far_bin = floor((levels_2.y * 0.03125));
     if (!((levels_2.y == near_level))) {
         local = (levels_2.y < 0.0);
@@ -273,11 +314,11 @@ PeelnetBetween peelnet_between(PeelnetPlace place_1, float total, float first, f
     float depth = clamp((moment / max(rest, noise_)), _e126, _e127);
     float _e129 = begin;
     float mean = clamp(((depth - _e129) * per_extent), 0.0, 1.0);
-    bool before = (x < mean);
-    float bound = ((before ? (1.0 - mean) : (x - mean)) / max((before ? (1.0 - x) : x), 1e-6));
-    float low_1 = (before ? 0.0 : bound);
-    float high = (before ? bound : 1.0);
-    const PeelnetBetween peelnetbetween = ConstructPeelnetBetween(max(rest, 0.0), x, mean, low_1, high, (0.5 * extent_1), b, in_front);
+    bool before_2 = (x < mean);
+    float bound = ((before_2 ? (1.0 - mean) : (x - mean)) / max((before_2 ? (1.0 - x) : x), 1e-6));
+    float low = (before_2 ? 0.0 : bound);
+    float high = (before_2 ? bound : 1.0);
+    const PeelnetBetween peelnetbetween = ConstructPeelnetBetween(max(rest, 0.0), x, mean, low, high, (0.5 * extent_1), b, in_front);
     return peelnetbetween;
 }
 
@@ -295,11 +336,11 @@ bool peelnet_is_kept(float own, float kept)
     return _e12;
 }
 
-float peelnet_share(float root_absorbance, float depth_fraction, float mean_fraction, float share_low, float share_high)
+float peelnet_share(float root_absorbance, float place_fraction, float mean_fraction, float share_low, float share_high)
 {
-    float4 input_a = float4(root_absorbance, depth_fraction, mean_fraction, share_low);
+    float4 input_a = float4(root_absorbance, place_fraction, mean_fraction, share_low);
     float4 input_b = float4(share_high, 0.0, 0.0, 0.0);
-    float layer_a_a = (1.0 / (1.0 + exp(min(-(((0.43235356 + dot(float4(-0.1127578, 4.0526285, -4.443778, 0.32174426), input_a)) + (-0.24770096 * input_b.x))), 80.0))));
+    float layer_a_a = (1.0 / (1.0 + exp(min(-(((-1.7591442 + dot(float4(-0.13353014, 1.9546267, -1.4604926, 3.1351469), input_a)) + (1.3084604 * input_b.x))), 80.0))));
     return layer_a_a;
 }
 
@@ -327,7 +368,7 @@ float2 peelnet_weigh(PeelnetPlace place_2, bool counts, float4 absorbances, floa
     const float3 _e24 = peelnet_levels(float3(halves_1, halves_1.y));
     float2 decoded = _e24.xy;
     float2 levels_4 = ((place_2.slab < ends) ? decoded : float2(decoded.x, -1.0));
-    float before_1 = ((((place_2.slab > 0.0) ? sums_2.x : 0.0) + ((place_2.slab > 1.0) ? sums_2.y : 0.0)) + ((place_2.slab > 2.0) ? sums_2.z : 0.0));
+    float before_3 = ((((place_2.slab > 0.0) ? sums_2.x : 0.0) + ((place_2.slab > 1.0) ? sums_2.y : 0.0)) + ((place_2.slab > 2.0) ? sums_2.z : 0.0));
     if (counts) {
         const bool _e56 = peelnet_is_kept(place_2.near, levels_4.x);
         local_3 = _e56;
@@ -365,7 +406,7 @@ float2 peelnet_weigh(PeelnetPlace place_2, bool counts, float4 absorbances, floa
     float share_1 = (_e83.low + ((_e83.high - _e83.low) * _e88));
     float at_end = (is_far ? max((_e11 - place_2.absorbance), 0.0) : 0.0);
     float inside_1 = (known ? at_end : (_e83.nearest + (_e83.absorbance * share_1)));
-    return float2(exp(-((before_1 + inside_1))), (known ? 1.0 : 0.0));
+    return float2(exp(-((before_3 + inside_1))), (known ? 1.0 : 0.0));
 }
 
 PeelnetStatistics ConstructPeelnetStatistics(float4 arg0, float4 arg1, float2 arg2) {
@@ -376,25 +417,25 @@ PeelnetStatistics ConstructPeelnetStatistics(float4 arg0, float4 arg1, float2 ar
     return ret;
 }
 
-PeelnetStatistics peelnet_statistics(float alpha_3, float zeta_2, float2 range_2)
+PeelnetStatistics peelnet_statistics(float alpha_4, float t_1)
 {
-    const PeelnetPlace _e3 = peelnet_place(alpha_3, zeta_2, range_2);
-    const float2 _e4 = peelnet_records(alpha_3, _e3);
-    const float4 _e8 = peelnet_in_slab(_e3.absorbance, _e3.slab, 0.0);
-    const float4 _e12 = peelnet_in_slab(_e4.x, _e3.slab, PEELNET_EMPTY);
-    const float4 _e18 = peelnet_in_slab((_e3.absorbance * _e3.inside), _e3.slab, 0.0);
-    float farthest_1 = ((_e3.slab > 0.0) ? PEELNET_EMPTY : _e4.y);
-    const PeelnetStatistics peelnetstatistics = ConstructPeelnetStatistics(float4(_e8.xyz, _e18.x), float4(_e12.xyz, farthest_1), _e18.yz);
+    const PeelnetPlace _e2 = peelnet_place(alpha_4, t_1);
+    const float2 _e3 = peelnet_records(alpha_4, _e2);
+    const float4 _e7 = peelnet_in_slab(_e2.absorbance, _e2.slab, 0.0);
+    const float4 _e11 = peelnet_in_slab(_e3.x, _e2.slab, PEELNET_EMPTY);
+    const float4 _e17 = peelnet_in_slab((_e2.absorbance * _e2.inside), _e2.slab, 0.0);
+    float farthest_1 = ((_e2.slab > 0.0) ? PEELNET_EMPTY : _e3.y);
+    const PeelnetStatistics peelnetstatistics = ConstructPeelnetStatistics(float4(_e7.xyz, _e17.x), float4(_e11.xyz, farthest_1), _e17.yz);
     return peelnetstatistics;
 }
 
-float2 peelnet_fragment(float alpha_4, float zeta_3, float2 range_3, float4 absorbances_1, float4 nearest_1, float2 firsts_1)
+float2 peelnet_fragment(float alpha_5, float t_2, float4 absorbances_1, float4 nearest_1, float2 firsts_1)
 {
-    const PeelnetPlace _e6 = peelnet_place(alpha_4, zeta_3, range_3);
+    const PeelnetPlace _e5 = peelnet_place(alpha_5, t_2);
     float4 means = float4(absorbances_1.w, firsts_1, 0.0);
     float4 last = float4(nearest_1.w, (-65504.0).xxx);
-    const float2 _e17 = peelnet_weigh(_e6, (alpha_4 >= PEELNET_FAINT), absorbances_1, means, nearest_1, last, 1.0);
-    return _e17;
+    const float2 _e16 = peelnet_weigh(_e5, (alpha_5 >= PEELNET_FAINT), absorbances_1, means, nearest_1, last, 1.0);
+    return _e16;
 }
 
 float4 peelnet_composite(float4 sums, float coverage, float3 transmittance, float3 background)
@@ -418,10 +459,10 @@ float4 peelnet_resolve(float4 sums_1, float absorbance, float3 background_1)
     return _e11;
 }
 
-float peelnet_weight(float root_absorbance_1, float depth_fraction_1, float mean_fraction_1, float share_low_1, float share_high_1)
+float peelnet_weight(float root_absorbance_1, float place_fraction_1, float mean_fraction_1, float share_low_1, float share_high_1)
 {
     float root = clamp(root_absorbance_1, 0.0, 256.0);
-    const float _e23 = peelnet_share(clamp(root_absorbance_1, -34088.613, 34097.582), clamp(depth_fraction_1, -3009.4707, 3010.5063), clamp(mean_fraction_1, -1503.4812, 1504.4995), clamp(share_low_1, -2239.6372, 2239.9868), clamp(share_high_1, -2294.1284, 2295.7822));
+    const float _e23 = peelnet_share(clamp(root_absorbance_1, -44669.324, 44680.637), clamp(place_fraction_1, -2837.4568, 2838.5583), clamp(mean_fraction_1, -1647.5083, 1648.593), clamp(share_low_1, -2048.5222, 2048.8376), clamp(share_high_1, -2229.5735, 2231.2566));
     float2 bounds = clamp(float2(share_low_1, share_high_1), (0.0).xx, (1.0).xx);
     return exp(((-(root) * root) * lerp(bounds.x, bounds.y, _e23)));
 }

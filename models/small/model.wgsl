@@ -3,39 +3,41 @@
 // WGSL, plain WebGPU. Compiled by naga, and run on a GPU against the network at every export.
 // Network: 5-1 (Relu hidden, Sigmoid last), 6 parameters, 5 multiply-adds. Recipe small, seed 1, 40 epochs.
 // Answers: transmittance of what lies between a slab's known ends, exp(-absorbance * share) with absorbance = root_absorbance^2 and share in share_low .. share_high.
-// Input 0: root_absorbance (root of the absorbance between the slab's ends), 0.0 .. 18.285723 in training.
-// Input 1: depth_fraction (of the depth between the slab's ends), 0.0 .. 1.0 in training.
-// Input 2: mean_fraction (of the depth between the slab's ends), 0.0 .. 1.0 in training.
+// Input 0: root_absorbance (root of the absorbance between the slab's ends), 0.0 .. 20.908148 in training.
+// Input 1: place_fraction (of the way between the slab's ends), 0.0 .. 1.0 in training.
+// Input 2: mean_fraction (of the way between the slab's ends), 0.0 .. 1.0 in training.
 // Input 3: share_low (of the absorbance between the slab's ends), 0.0 .. 1.0 in training.
 // Input 4: share_high (of the absorbance between the slab's ends), 0.0 .. 1.0 in training.
-// Trained on 21531714 rows of boxes, cups, foliage, intersecting, opaque-mix, panes, sixteen-025, sixteen-050, sixteen-075, sixteen-085, sixteen-random-alpha, sixteen-random-color, smoke-100, smoke-30, synthetic (dataset b7ad9cb0d2c09dc1638bcd9266d352a93f8e00bc73cd1e178a68bf55c7773289+ea59181067487e28a3ecbe45990ec58875bfc5212a817cbef25c5c9618a9c370).
-// Loss: training 0.000240, validation 0.000233, test 0.000223.
-// Held-out error, mean |T - T_exact|: boxes-held 0.01103, cups-held 0.00539, foliage-held 0.00253, panes-held 0.00058, sixteen-held 0.00294, smoke-held 0.00818.
+// Trained on 21565796 rows of boxes, cups, foliage, intersecting, opaque-mix, panes, sixteen-025, sixteen-050, sixteen-075, sixteen-085, sixteen-random-alpha, sixteen-random-color, smoke-100, smoke-30, synthetic (dataset f0e6c4a7cca08d560f99a5be9cbd1514bf8be352632a347602bf08363695fd29+eb0fb0725f43962450fda44a06f4c27ba969a523c02d556c7eebdda5833c5318).
+// Loss: training 0.000185, validation 0.000181, test 0.000178.
+// Held-out error, mean |T - T_exact|: boxes-held 0.00414, cups-held 0.00373, foliage-held 0.00152, panes-held 0.00058, sixteen-held 0.00136, smoke-held 0.00635.
 //
 // Self-tests, to some roundings of 32 bits; weights and colours also to those of 16-bit targets.
-// peelnet_weight(7.116623, 0.014353275, 0.21181071, 0.010463357, 0.22229642) = 0.059675418
-// peelnet_weight(2.7908742, 0.3421247, 0.95406777, 0.022867262, 0.49329907) = 0.6849483
-// peelnet_weight(3.2184267, 0.5225114, 0.08770603, 0.111551285, 0.022744834) = 0.6955632
+// peelnet_weight(8.137245, 0.014353275, 0.21181071, 0.010463357, 0.22229642) = 0.22439188
+// peelnet_weight(3.191124, 0.3421247, 0.95406777, 0.022867262, 0.49329907) = 0.4897623
+// peelnet_weight(3.6799936, 0.5225114, 0.08770603, 0.111551285, 0.022744834) = 0.3066788
 // Four fragments of a pixel, near 1.0, far 8.0, background 0.25, 0.5, 0.75:
 //    z 1.0, alpha 0.5, rgb 1.0, 0.0, 0.0: zeta -1.0, weight 1.0
 //    z 2.0, alpha 0.5, rgb 0.0, 1.0, 0.0: zeta -0.33333334, weight 0.5
 //    z 4.0, alpha 0.5, rgb 0.0, 0.0, 1.0: zeta 0.33333334, weight 0.25
 //    z 8.0, alpha 0.9, rgb 1.0, 1.0, 1.0: zeta 1.0, weight 0.125
-//    target range: 1.0, 1.0
-//    target absorbances: 0.6931472, 0.6931472, 2.995732, -0.6931472
-//    target nearest: 64928.0, -0.00017380714, 0.061920166, -65088.0
-//    target firsts: 0.033007007, 2.0715358
+//    target bins_front: 0.08627451, 0.0, 0.08627451, 0.0
+//    target bins_back: 0.0, 0.08627451, 0.0, 0.2901961
+//    target absorbances: 0.6931472, 1.3862944, 2.302585, -0.6931472
+//    target nearest: 64928.0, 1014.5, -64768.0, -65088.0
+//    target firsts: -0.16223454, 2.302585
 //    colour of the pixel: 0.615625, 0.36875, 0.246875
 //
 // How to draw with it. Targets may have 32 bits a channel wherever 16 are named.
 // 0. zeta = peelnet_zeta(z, near, far): z is the distance along the view axis, near and far the range of z that the bounding boxes of the transparent objects in view span, clipped to the camera's. A tight range matters more than anything else you choose. Compute zeta with this function in all passes. Its range is the same for the whole frame: peelnet_zeta_in(z, peelnet_range(near, far)) is the same value, and the range may be passed in.
-// 1. Pass "range": draw all transparent surfaces, in any order. let r = peelnet_pixel_range(zeta);
-//    range: rg8unorm, cleared to 0, blending MAX, from r
-// 2. Pass "statistics": draw all transparent surfaces, in any order. let s = peelnet_statistics(alpha, zeta, range);
+// 1. Pass "range": draw all transparent surfaces, in any order. let bins = peelnet_bins(alpha, zeta);
+//    bins_front: rgba8unorm, cleared to 0, blending ADD, from bins.front
+//    bins_back: rgba8unorm, cleared to 0, blending ADD, from bins.back
+// 2. Pass "statistics": draw all transparent surfaces, in any order. let s = peelnet_statistics(alpha, peelnet_in_pixel(zeta, bins_front, bins_back));
 //    absorbances: rgba16float, cleared to 0, blending ADD, from s.absorbances
 //    nearest: rgba16float, cleared to -65504, blending MAX, from s.nearest
 //    firsts: rg16float, cleared to 0, blending ADD, from s.firsts
-// 3. Pass "weights": draw all transparent surfaces, in any order. let w = peelnet_fragment(alpha, zeta, range, absorbances, nearest, firsts).x;
+// 3. Pass "weights": draw all transparent surfaces, in any order. let w = peelnet_fragment(alpha, peelnet_in_pixel(zeta, bins_front, bins_back), absorbances, nearest, firsts).x;
 //    sums: rgba16float, cleared to 0, blending ADD, from vec4f(alpha * rgb, alpha) * w
 // 4. Resolve: peelnet_resolve(sums, absorbances.x + absorbances.y + absorbances.z, background) is the colour of the pixel, and its coverage in alpha.
 // - alpha is opacity, rgb the linear colour that is not multiplied by it. Resolve before tone mapping and encoding.
@@ -94,8 +96,10 @@ fn peelnet_levels(halves: vec3f) -> vec3f {
 
 // Fragments of less opacity are composited, but are never a slab's nearest or farthest.
 const PEELNET_FAINT: f32 = 0.003921569;
-// Levels of the range of depths, less one.
-const PEELNET_RANGE_TOP: f32 = 255.0;
+// What is seen of a bin that has fragments, at least: where little light passes, order still counts a little.
+const PEELNET_LEAST_SEEN: f32 = 0.00390625;
+// Levels of 8 bits that an absorbance of 1 is.
+const PEELNET_BIN_LEVELS: f32 = 32.0;
 // Bins of depth in a slab, and levels of opacity in each, that its nearest and its farthest fragment are kept with.
 const PEELNET_BINS: f32 = 1920.0;
 const PEELNET_OPACITIES: f32 = 32.0;
@@ -134,17 +138,52 @@ struct PeelnetBetween {
     nearest: f32,
 }
 
-// What a fragment writes of the pixel's range, into 8 bits under MAX: its level of depth counted from the far end, rounded down, and
-// from the near end, rounded up.
-fn peelnet_pixel_range(zeta: f32) -> vec2f {
-    let level = PEELNET_RANGE_TOP * (zeta * 0.5 + 0.5);
-    return vec2f(PEELNET_RANGE_TOP - floor(level), ceil(level)) / PEELNET_RANGE_TOP;
+// Absorbances of eight bins of the frame's depth, nearest first, in 8 bits.
+struct PeelnetBins {
+    front: vec4f,
+    back: vec4f,
 }
 
-fn peelnet_place(alpha: f32, zeta: f32, range: vec2f) -> PeelnetPlace {
-    let ends = floor(range * PEELNET_RANGE_TOP + 0.5);
-    let low = PEELNET_RANGE_TOP - ends.x;
-    let t = clamp((PEELNET_RANGE_TOP * (zeta * 0.5 + 0.5) - low) / max(ends.y - low, 1.0), 0.0, 1.0);
+// What a fragment adds to 8-bit targets: its absorbance, in its own bin. Whole levels, so that no order of adding changes a sum.
+fn peelnet_bins(alpha: f32, zeta: f32) -> PeelnetBins {
+    let bin = min(floor(zeta * 4.0 + 4.0), 7.0);
+    // At least one: a bin with any fragment is not empty.
+    let level = clamp(floor(peelnet_absorbance(alpha) * PEELNET_BIN_LEVELS + 0.5), 1.0, 255.0) / 255.0;
+    return PeelnetBins(
+        select(vec4f(0.0), vec4f(level), vec4f(bin) == vec4f(0.0, 1.0, 2.0, 3.0)),
+        select(vec4f(0.0), vec4f(level), vec4f(bin) == vec4f(4.0, 5.0, 6.0, 7.0)),
+    );
+}
+
+// What is let through up to the far end of each of four bins behind an absorbance.
+fn peelnet_passing(before: f32, bins: vec4f) -> vec4f {
+    let two = bins.x + bins.y;
+    let absorbances = vec4f(bins.x, two, two + bins.z, two + bins.z + bins.w);
+    return exp((vec4f(before) + absorbances) * (-255.0 / PEELNET_BIN_LEVELS));
+}
+
+// How much of the pixel's scale each of four bins takes: the root of what is seen of it, and nothing where it is empty.
+fn peelnet_shares(before: vec4f, behind: vec4f, bins: vec4f) -> vec4f {
+    return select(vec4f(0.0), sqrt(max(before - behind, vec4f(PEELNET_LEAST_SEEN))), bins > vec4f(0.0));
+}
+
+// Where a depth lies in its pixel, 0 .. 1, by the absorbances of its bins. Where all are empty, it is the root of the frame's depth.
+fn peelnet_in_pixel(zeta: f32, front: vec4f, back: vec4f) -> f32 {
+    let place = zeta * 4.0 + 4.0;
+    let none = vec4f(0.0);
+    let one = vec4f(1.0);
+    let near = peelnet_passing(0.0, front);
+    let far = peelnet_passing(dot(front, one), back);
+    let of_front = peelnet_shares(vec4f(1.0, near.xyz), near, front);
+    let of_back = peelnet_shares(vec4f(near.w, far.xyz), far, back);
+    let passed = dot(of_front, clamp(vec4f(place) - vec4f(0.0, 1.0, 2.0, 3.0), none, one))
+        + dot(of_back, clamp(vec4f(place) - vec4f(4.0, 5.0, 6.0, 7.0), none, one));
+    let all = dot(of_front + of_back, one);
+    return select(min(passed / max(all, 1e-6), 1.0), sqrt(place * 0.125), all == 0.0);
+}
+
+// t: where in its pixel the fragment lies, 0 .. 1.
+fn peelnet_place(alpha: f32, t: f32) -> PeelnetPlace {
     let b = peelnet_absorbance(alpha);
     let first = select(0.0, 1.0, t >= PEELNET_FIRST_END);
     let passed = first + select(0.0, 1.0, t >= PEELNET_SECOND_END) + select(0.0, 1.0, t >= PEELNET_THIRD_END);
@@ -267,9 +306,9 @@ fn peelnet_weigh(
     return vec2f(exp(-(before + inside)), select(0.0, 1.0, known));
 }
 
-// Where a slab ends and the next begins, in the pixel's range, and the number of the last slab.
-const PEELNET_FIRST_END: f32 = 0.15;
-const PEELNET_SECOND_END: f32 = 0.5;
+// Where a slab ends and the next begins, in the pixel, and the number of the last slab.
+const PEELNET_FIRST_END: f32 = 0.525;
+const PEELNET_SECOND_END: f32 = 0.745;
 const PEELNET_THIRD_END: f32 = 1.0;
 const PEELNET_LAST_SLAB: f32 = 2.0;
 
@@ -282,9 +321,9 @@ struct PeelnetStatistics {
     firsts: vec2f,
 }
 
-// What a fragment adds to its pixel's statistics. range: of the pixel, as the pass before left it.
-fn peelnet_statistics(alpha: f32, zeta: f32, range: vec2f) -> PeelnetStatistics {
-    let place = peelnet_place(alpha, zeta, range);
+// What a fragment adds to its pixel's statistics. t: where in its pixel it lies, as peelnet_in_pixel has it.
+fn peelnet_statistics(alpha: f32, t: f32) -> PeelnetStatistics {
+    let place = peelnet_place(alpha, t);
     let halves = peelnet_records(alpha, place);
     let absorbances = peelnet_in_slab(place.absorbance, place.slab, 0.0);
     let nearest = peelnet_in_slab(halves.x, place.slab, PEELNET_EMPTY);
@@ -294,8 +333,8 @@ fn peelnet_statistics(alpha: f32, zeta: f32, range: vec2f) -> PeelnetStatistics 
 }
 
 // The weight of a fragment, and whether it is known without the network.
-fn peelnet_fragment(alpha: f32, zeta: f32, range: vec2f, absorbances: vec4f, nearest: vec4f, firsts: vec2f) -> vec2f {
-    let place = peelnet_place(alpha, zeta, range);
+fn peelnet_fragment(alpha: f32, t: f32, absorbances: vec4f, nearest: vec4f, firsts: vec2f) -> vec2f {
+    let place = peelnet_place(alpha, t);
     let means = vec4f(absorbances.w, firsts, 0.0);
     let last = vec4f(nearest.w, vec3f(PEELNET_EMPTY));
     return peelnet_weigh(place, alpha >= PEELNET_FAINT, absorbances, means, nearest, last, 1.0);
@@ -321,20 +360,20 @@ fn peelnet_network(between: PeelnetBetween) -> f32 {
 }
 
 // Where between its bounds the share of the absorbance lies that is in front, for inputs as peelnet_network evaluates them.
-fn peelnet_share(root_absorbance: f32, depth_fraction: f32, mean_fraction: f32, share_low: f32, share_high: f32) -> f32 {
-    let input_a = vec4f(root_absorbance, depth_fraction, mean_fraction, share_low);
+fn peelnet_share(root_absorbance: f32, place_fraction: f32, mean_fraction: f32, share_low: f32, share_high: f32) -> f32 {
+    let input_a = vec4f(root_absorbance, place_fraction, mean_fraction, share_low);
     let input_b = vec4f(share_high, 0.0, 0.0, 0.0);
-    let layer_a_a = 1.0 / (1.0 + exp(min(-(0.43235356
-        + dot(vec4f(-0.1127578, 4.0526285, -4.443778, 0.32174426), input_a)
-        + -0.24770096 * input_b.x), 80.0)));
+    let layer_a_a = 1.0 / (1.0 + exp(min(-(-1.7591442
+        + dot(vec4f(-0.13353014, 1.9546267, -1.4604926, 3.1351469), input_a)
+        + 1.3084604 * input_b.x), 80.0)));
     return layer_a_a;
 }
 
 // Its transmittance, for any finite inputs.
-fn peelnet_weight(root_absorbance: f32, depth_fraction: f32, mean_fraction: f32, share_low: f32, share_high: f32) -> f32 {
+fn peelnet_weight(root_absorbance: f32, place_fraction: f32, mean_fraction: f32, share_low: f32, share_high: f32) -> f32 {
     let root = clamp(root_absorbance, 0.0, 256.0);
     let share = peelnet_share(
-        clamp(root_absorbance, -34088.613, 34097.582), clamp(depth_fraction, -3009.4707, 3010.5063), clamp(mean_fraction, -1503.4812, 1504.4995), clamp(share_low, -2239.6372, 2239.9868), clamp(share_high, -2294.1284, 2295.7822));
+        clamp(root_absorbance, -44669.324, 44680.637), clamp(place_fraction, -2837.4568, 2838.5583), clamp(mean_fraction, -1647.5083, 1648.593), clamp(share_low, -2048.5222, 2048.8376), clamp(share_high, -2229.5735, 2231.2566));
     let bounds = clamp(vec2f(share_low, share_high), vec2f(0.0), vec2f(1.0));
     return exp(-root * root * mix(bounds.x, bounds.y, share));
 }

@@ -1,7 +1,9 @@
 // Fragments of less opacity are composited, but are never a slab's nearest or farthest.
 const PEELNET_FAINT: f32 = 0.003921569;
-// Levels of the range of depths, less one.
-const PEELNET_RANGE_TOP: f32 = 255.0;
+// What is seen of a bin that has fragments, at least: where little light passes, order still counts a little.
+const PEELNET_LEAST_SEEN: f32 = 0.00390625;
+// Levels of 8 bits that an absorbance of 1 is.
+const PEELNET_BIN_LEVELS: f32 = 32.0;
 // Bins of depth in a slab, and levels of opacity in each, that its nearest and its farthest fragment are kept with.
 const PEELNET_BINS: f32 = 1920.0;
 const PEELNET_OPACITIES: f32 = 32.0;
@@ -40,17 +42,52 @@ struct PeelnetBetween {
     nearest: f32,
 }
 
-// What a fragment writes of the pixel's range, into 8 bits under MAX: its level of depth counted from the far end, rounded down, and
-// from the near end, rounded up.
-fn peelnet_pixel_range(zeta: f32) -> vec2f {
-    let level = PEELNET_RANGE_TOP * (zeta * 0.5 + 0.5);
-    return vec2f(PEELNET_RANGE_TOP - floor(level), ceil(level)) / PEELNET_RANGE_TOP;
+// Absorbances of eight bins of the frame's depth, nearest first, in 8 bits.
+struct PeelnetBins {
+    front: vec4f,
+    back: vec4f,
 }
 
-fn peelnet_place(alpha: f32, zeta: f32, range: vec2f) -> PeelnetPlace {
-    let ends = floor(range * PEELNET_RANGE_TOP + 0.5);
-    let low = PEELNET_RANGE_TOP - ends.x;
-    let t = clamp((PEELNET_RANGE_TOP * (zeta * 0.5 + 0.5) - low) / max(ends.y - low, 1.0), 0.0, 1.0);
+// What a fragment adds to 8-bit targets: its absorbance, in its own bin. Whole levels, so that no order of adding changes a sum.
+fn peelnet_bins(alpha: f32, zeta: f32) -> PeelnetBins {
+    let bin = min(floor(zeta * 4.0 + 4.0), 7.0);
+    // At least one: a bin with any fragment is not empty.
+    let level = clamp(floor(peelnet_absorbance(alpha) * PEELNET_BIN_LEVELS + 0.5), 1.0, 255.0) / 255.0;
+    return PeelnetBins(
+        select(vec4f(0.0), vec4f(level), vec4f(bin) == vec4f(0.0, 1.0, 2.0, 3.0)),
+        select(vec4f(0.0), vec4f(level), vec4f(bin) == vec4f(4.0, 5.0, 6.0, 7.0)),
+    );
+}
+
+// What is let through up to the far end of each of four bins behind an absorbance.
+fn peelnet_passing(before: f32, bins: vec4f) -> vec4f {
+    let two = bins.x + bins.y;
+    let absorbances = vec4f(bins.x, two, two + bins.z, two + bins.z + bins.w);
+    return exp((vec4f(before) + absorbances) * (-255.0 / PEELNET_BIN_LEVELS));
+}
+
+// How much of the pixel's scale each of four bins takes: the root of what is seen of it, and nothing where it is empty.
+fn peelnet_shares(before: vec4f, behind: vec4f, bins: vec4f) -> vec4f {
+    return select(vec4f(0.0), sqrt(max(before - behind, vec4f(PEELNET_LEAST_SEEN))), bins > vec4f(0.0));
+}
+
+// Where a depth lies in its pixel, 0 .. 1, by the absorbances of its bins. Where all are empty, it is the root of the frame's depth.
+fn peelnet_in_pixel(zeta: f32, front: vec4f, back: vec4f) -> f32 {
+    let place = zeta * 4.0 + 4.0;
+    let none = vec4f(0.0);
+    let one = vec4f(1.0);
+    let near = peelnet_passing(0.0, front);
+    let far = peelnet_passing(dot(front, one), back);
+    let of_front = peelnet_shares(vec4f(1.0, near.xyz), near, front);
+    let of_back = peelnet_shares(vec4f(near.w, far.xyz), far, back);
+    let passed = dot(of_front, clamp(vec4f(place) - vec4f(0.0, 1.0, 2.0, 3.0), none, one))
+        + dot(of_back, clamp(vec4f(place) - vec4f(4.0, 5.0, 6.0, 7.0), none, one));
+    let all = dot(of_front + of_back, one);
+    return select(min(passed / max(all, 1e-6), 1.0), sqrt(place * 0.125), all == 0.0);
+}
+
+// t: where in its pixel the fragment lies, 0 .. 1.
+fn peelnet_place(alpha: f32, t: f32) -> PeelnetPlace {
     let b = peelnet_absorbance(alpha);
     let first = select(0.0, 1.0, t >= PEELNET_FIRST_END);
     let passed = first + select(0.0, 1.0, t >= PEELNET_SECOND_END) + select(0.0, 1.0, t >= PEELNET_THIRD_END);

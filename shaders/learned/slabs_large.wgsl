@@ -1,7 +1,7 @@
-// Where a slab ends and the next begins, in the pixel's range, and the number of the last slab.
-const PEELNET_FIRST_END: f32 = 0.12;
-const PEELNET_SECOND_END: f32 = 0.4;
-const PEELNET_THIRD_END: f32 = 0.75;
+// Where a slab ends and the next begins, in the pixel, and the number of the last slab.
+const PEELNET_FIRST_END: f32 = 0.34;
+const PEELNET_SECOND_END: f32 = 0.63;
+const PEELNET_THIRD_END: f32 = 0.8;
 const PEELNET_LAST_SLAB: f32 = 3.0;
 
 struct PeelnetStatistics {
@@ -14,9 +14,9 @@ struct PeelnetStatistics {
     firsts: vec4f,
 }
 
-// What a fragment adds to its pixel's statistics. range: of the pixel, as the pass before left it.
-fn peelnet_statistics(alpha: f32, zeta: f32, range: vec2f) -> PeelnetStatistics {
-    let place = peelnet_place(alpha, zeta, range);
+// What a fragment adds to its pixel's statistics. t: where in its pixel it lies, as peelnet_in_pixel has it.
+fn peelnet_statistics(alpha: f32, t: f32) -> PeelnetStatistics {
+    let place = peelnet_place(alpha, t);
     let halves = peelnet_records(alpha, place);
     let absorbances = peelnet_in_slab(place.absorbance, place.slab, 0.0);
     let nearest = peelnet_in_slab(halves.x, place.slab, PEELNET_EMPTY);
@@ -28,13 +28,12 @@ fn peelnet_statistics(alpha: f32, zeta: f32, range: vec2f) -> PeelnetStatistics 
 // The weight of a fragment, and whether it is known without the network.
 fn peelnet_fragment(
     alpha: f32,
-    zeta: f32,
-    range: vec2f,
+    t: f32,
     absorbances: vec4f,
     nearest: vec4f,
     farthest: vec4f,
     firsts: vec4f,
 ) -> vec2f {
-    let place = peelnet_place(alpha, zeta, range);
+    let place = peelnet_place(alpha, t);
     return peelnet_weigh(place, alpha >= PEELNET_FAINT, absorbances, firsts, nearest, farthest, 4.0);
 }

@@ -71,7 +71,16 @@ const LANGUAGES: [(&str, &str); 5] = [
 
 /// Held-out scenes of which no training scene has a sibling. They are left out of training altogether: a view's number decides which of its
 /// pixels are drawn, so that further scenes would change the rows of all.
-const FAMILIES: [&str; 4] = ["clouds-held", "hair-held", "interior-held", "text-held"];
+const FAMILIES: [&str; 8] = [
+    "backdrop-held",
+    "clouds-held",
+    "hair-held",
+    "interior-held",
+    "text-held",
+    "visor-held",
+    "water-held",
+    "window-held",
+];
 
 /// Training scenes of five kinds, which judge designs that were trained without them.
 const ACROSS: [&str; 5] = ["boxes", "cups", "foliage", "panes", "smoke-30"];

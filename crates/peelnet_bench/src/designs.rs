@@ -60,7 +60,7 @@ impl Entry {
     pub fn measure(&self, view: &View, model: Option<&Model>) -> Measured {
         let composite = |stack: &Stacked<'_>| {
             let design = Design {
-                extent: stack.extent(self.source),
+                extent: stack.extent(self.source, self.design.extent),
                 ..self.design
             };
             slabs::composite_on(

@@ -114,6 +114,7 @@ impl Language {
             _ if self == Self::Wgsl => return value.to_string(),
             ValueKind::Number => number,
             ValueKind::Pair => pair,
+            ValueKind::Bins => "PeelnetBins",
             ValueKind::Statistics => "PeelnetStatistics",
         };
         format!("{kind} {} = {};", value.name, self.expression(value.call))

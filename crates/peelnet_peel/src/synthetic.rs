@@ -4,7 +4,8 @@
 //! depths range (1.05 to 8,000 times), where its objects lie (evenly, towards the front, in clusters, in rows), whether
 //! they are sheets, bodies with two surfaces or thin walls, how opaque each is (the schemes that scenes are varied with,
 //! and particles), and their colours. A list is then a ray through it: it meets some objects, each off its middle by
-//! chance. A world is a part of the dataset like a view of a scene, with the same columns.
+//! chance. Of five worlds two have a sheet or two apart from the rest, as windows, visors, water and backdrops are. A world is a part of the
+//! dataset like a view of a scene, with the same columns.
 
 use crate::{
     ExtractOptions, ExtractReport, PeelError, Progress,
@@ -45,6 +46,8 @@ struct World {
     /// Logarithm of the depth range.
     log_range: f32,
     objects: Vec<Object>,
+    /// Sheets far before or behind the objects, which nearly all rays meet.
+    apart: Vec<Object>,
     /// How likely a ray meets an object.
     hit: f32,
     /// How much a sheet's depth varies from ray to ray.
@@ -108,7 +111,26 @@ impl World {
                 }
             })
             .collect();
+        let apart = [0.6, 0.7].map(|one_more| {
+            let (is_none, is_near) = (random.unit() < one_more, random.unit() < 0.7);
+            let times = if is_near {
+                1.0 / random.log_between(1.5, 50.0)
+            } else {
+                random.log_between(1.5, 20.0)
+            };
+            let sheet = Object {
+                middle: f32::from(u8::from(!is_near)) + times.ln() / log_range,
+                half: 0.0,
+                wall: 0.0,
+                alpha: random.between(0.03, 0.6),
+                color: random.color(),
+            };
+            (!is_none).then_some(sheet)
+        });
+        // A second one only beside a first.
+        let apart = apart.into_iter().map_while(|sheet| sheet).collect();
         Self {
+            apart,
             near: random.log_between(0.05, 20.0),
             log_range,
             objects,
@@ -122,6 +144,13 @@ impl World {
     /// A ray's fragments, in any order: depth and (radiance, α).
     fn list(&self, random: &mut Random) -> Vec<(f32, [f32; 4])> {
         let mut list = Vec::new();
+        for sheet in &self.apart {
+            let (met, at) = (random.unit(), sheet.middle);
+            if met < 0.9 {
+                let [r, g, b] = sheet.color;
+                list.push((self.near * (self.log_range * at).exp(), [r, g, b, sheet.alpha]));
+            }
+        }
         for o in &self.objects {
             // Drawn for every object, so that missing one changes nothing of the others.
             let (met, offset, falloff) = (random.unit(), random.unit(), random.unit());
@@ -259,6 +288,7 @@ mod tests {
     fn worlds_are_wide() {
         let mut ranges = Vec::new();
         let mut layers = Vec::new();
+        let mut apart = [0; 3];
         for seed in 0..300 {
             let mut random = Random::new(seed, &[]);
             let world = World::new(&mut random);
@@ -272,9 +302,11 @@ mod tests {
             assert!(tile.depths.iter().all(|&z| z > range[0] && z < range[1]));
             assert!(tile.colors.iter().all(|c| c[3] > 0.0 && c[3] < 1.0));
             ranges.push(world.log_range);
+            apart[world.apart.len()] += 1;
         }
         let most = layers.iter().max().copied().unwrap_or(0);
         assert!(most >= 100 && layers.contains(&3), "{most}");
+        assert!(apart[0] > 150 && apart[1] > 50 && apart[2] > 15, "{apart:?}");
         assert!(ranges.iter().any(|&r| r < 0.1) && ranges.iter().any(|&r| r > 8.0));
     }
 }

@@ -1,7 +1,12 @@
-// Slabs, pass 1 over boxes: the range of a pixel from where its ray enters a box to where it leaves it.
+// Slabs, pass 1 over boxes: the range of a pixel from where its ray enters a box to where it leaves it, in 8 bits under MAX blending: the
+// level of depth counted from the far end, rounded down, and from the near end, rounded up.
 import package::helpers::range::transparent_range;
-import package::learned::weight::{peelnet_pixel_range, peelnet_zeta_in};
+import package::learned::weight::peelnet_zeta_in;
 import package::scene::box_vertex::BoxFace;
+
+fn level(depth: f32) -> f32 {
+    return 127.5 * (peelnet_zeta_in(depth, transparent_range()) + 1.0);
+}
 
 @fragment
 fn fragment_main(face: BoxFace) -> @location(0) vec2f {
@@ -10,8 +15,5 @@ fn fragment_main(face: BoxFace) -> @location(0) vec2f {
     let along = select(ray, vec3f(1e-20), abs(ray) < vec3f(1e-20));
     let crossed = min(-face.eye / along, (1.0 - face.eye) / along);
     let enters = clamp(max(crossed.x, max(crossed.y, crossed.z)), 0.0, 1.0);
-    let range = transparent_range();
-    let nearest = peelnet_pixel_range(peelnet_zeta_in(enters * face.depth_linear, range));
-    let farthest = peelnet_pixel_range(peelnet_zeta_in(face.depth_linear, range));
-    return vec2f(nearest.x, farthest.y);
+    return vec2f(255.0 - floor(level(enters * face.depth_linear)), ceil(level(face.depth_linear))) / 255.0;
 }

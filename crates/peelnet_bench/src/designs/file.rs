@@ -1,7 +1,7 @@
 use super::{DESIGNS, Entry, Source};
 use crate::EvalError;
 use peelnet_core::{
-    methods::slabs::{Design, Extent, Interior, Kept, MAX_SLABS},
+    methods::slabs::{Design, Extent, Interior, Kept, MAX_BINS, MAX_SLABS},
     statistics::{DEPTH_CODES, ExtremeCode, FARTHEST_CODE},
 };
 use peelnet_model::inputs::{FIVE, Feature, NINE, SlabInputs};
@@ -41,6 +41,7 @@ struct RawDesign {
     records: Option<String>,
     #[serde(default)]
     range: Source,
+    bins: Option<usize>,
     #[serde(default)]
     apart: bool,
     train_apart: Option<bool>,
@@ -106,7 +107,8 @@ impl RawDesign {
             records: self.records()?,
             extent: match self.range {
                 Source::Frame | Source::Quantiles => Extent::Frame,
-                Source::Pixel | Source::Boxes | Source::Last => Extent::Pixel,
+                Source::Ends => Extent::Ends,
+                Source::Pixel | Source::Boxes | Source::Last => Extent::Bins(self.bins()?),
             },
             apart: self.apart,
         };
@@ -196,6 +198,14 @@ impl RawDesign {
         Ok(Vec::leak(kept.collect()))
     }
 
+    fn bins(&self) -> Result<usize, String> {
+        let bins = self.bins.unwrap_or(8);
+        if (1..=MAX_BINS).contains(&bins) {
+            return Ok(bins);
+        }
+        Err(format!("bins holds {bins}; give 1 to {MAX_BINS}"))
+    }
+
     fn records(&self) -> Result<ExtremeCode, String> {
         let Some(text) = &self.records else {
             return Ok(FARTHEST_CODE);
@@ -264,7 +274,7 @@ records = "960x64"
 range = "frame"
 apart = true
 train_apart = false
-inputs = ["root_absorbance", "depth_fraction", "mean_fraction", "share_low", "share_high", "of_own"]
+inputs = ["root_absorbance", "place_fraction", "mean_fraction", "share_low", "share_high", "of_own"]
 hidden = [8, 4]
 loss = "contributions"
 seed = 7
@@ -328,6 +338,7 @@ seed = 7
             ("\"mean_fraction\", ", "", second, "begin with"),
             ("[8, 4]", "[8, 0]", second, "2 to 4096"),
             ("\"contributions\"", "\"l2\"", second, "transmittance"),
+            ("\"frame\"", "\"pixel\"\nbins = 17", second, "1 to 16"),
             ("\"full\"", "\"plain\"", "design 2", "rename"),
             ("epochs = 3", "epochs = 0", "[training]", "greater than 0"),
             ("hidden", "hiden", "line 23", "`hidden`"),

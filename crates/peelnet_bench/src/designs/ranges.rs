@@ -1,8 +1,8 @@
-//! Where a pixel's range of depth may come from, beside its own surfaces and the frame.
+//! Where a pixel's scale of depth may come from, beside its own surfaces and the frame.
 
 use super::views::View;
 use glam::{Mat4, Vec3};
-use peelnet_core::{absorbance::absorbance, methods::slabs::Range};
+use peelnet_core::{absorbance::absorbance, methods::slabs::Scale};
 use peelnet_scene::{Camera, Scene};
 use rayon::prelude::*;
 use serde::Deserialize;
@@ -11,14 +11,16 @@ use serde::Deserialize;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Source {
-    /// The range of the pixel's fragments: a geometry pass more.
+    /// What bins of the frame's depth let through in the pixel: a geometry pass more.
     #[default]
     Pixel,
+    /// From the pixel's nearest fragment to its farthest: a geometry pass more.
+    Ends,
     /// That of the frame's transparent objects.
     Frame,
     /// From where the pixel's ray enters the first of the boxes around transparent parts to where it leaves the last: a pass over boxes.
     Boxes,
-    /// That of all fragments that the frame before had within [`REACH`] pixels; the frame's where it had none.
+    /// From the nearest to the farthest of all fragments that the frame before had within [`REACH`] pixels; the frame's where it had none.
     Last,
     /// The frame's, on a scale half way between that of depth and the distribution of the frame's absorbance over it.
     Quantiles,
@@ -26,7 +28,7 @@ pub enum Source {
 
 impl Source {
     pub const fn name(self) -> &'static str {
-        ["pixel", "frame", "boxes", "last", "quantiles"][self as usize]
+        ["pixel", "ends", "frame", "boxes", "last", "quantiles"][self as usize]
     }
 }
 
@@ -53,8 +55,8 @@ fn crossed(unit_from_world: &Mat4, origin: Vec3, direction: Vec3) -> Option<[f32
     (leaves >= enters).then_some([enters, leaves])
 }
 
-/// The range of boxes at each pixel of a view that has fragments.
-pub(super) fn of_boxes(view: &View, scene: &Scene, camera: &Camera, size: [u32; 2]) -> Vec<Range> {
+/// The scale of boxes at each pixel of a view that has fragments.
+pub(super) fn of_boxes(view: &View, scene: &Scene, camera: &Camera, size: [u32; 2]) -> Vec<Scale> {
     let boxes = boxes(scene);
     let world_from_view = camera.view_from_world().inverse();
     let up = (camera.fov_y_degrees.to_radians() / 2.0).tan();
@@ -68,20 +70,20 @@ pub(super) fn of_boxes(view: &View, scene: &Scene, camera: &Camera, size: [u32; 
         let direction = world_from_view.transform_vector3(direction);
         let boxes = boxes.iter();
         let crossed = boxes.filter_map(|b| crossed(b, camera.position, direction));
-        let ends = crossed.flatten().map(|z| z.clamp(camera.near, camera.far));
-        let zetas: Vec<f64> = ends.map(|z| view.warp.apply(z.into())).collect();
+        let zeta = |z: f32| view.warp.apply(z.clamp(camera.near, camera.far).into());
+        let zetas: Vec<f64> = crossed.flatten().map(zeta).collect();
         if zetas.is_empty() {
-            Range::WHOLE
+            Scale::WHOLE
         } else {
-            Range::from_depths(zetas)
+            Scale::from_ends(zetas)
         }
     };
     let stacks = view.stacks.par_iter();
     stacks.map(|stack| of_place(stack.place)).collect()
 }
 
-/// The range of the frame before at each pixel of a view that has fragments.
-pub(super) fn of_last(view: &View, before: &View, width: usize, height: usize) -> Vec<Range> {
+/// The scale of the frame before at each pixel of a view that has fragments.
+pub(super) fn of_last(view: &View, before: &View, width: usize, height: usize) -> Vec<Scale> {
     // The nearest and the farthest depth, spread along rows, then along columns.
     let mut ends = vec![[f32::INFINITY, f32::NEG_INFINITY]; width * height];
     for stack in &before.stacks {
@@ -105,10 +107,10 @@ pub(super) fn of_last(view: &View, before: &View, width: usize, height: usize) -
     let ends = spread(&ends, width, 1, &|i| i % width);
     let ends = spread(&ends, height, width, &|i| i / width);
     let of_place = |place: usize| match ends[place] {
-        [low, high] if low <= high => {
-            Range::from_depths([low, high].map(|z| view.warp.apply(z.into())))
+        ends @ [low, high] if low <= high => {
+            Scale::from_ends(ends.map(|z| view.warp.apply(z.into())))
         }
-        _ => Range::WHOLE,
+        _ => Scale::WHOLE,
     };
     let stacks = view.stacks.iter();
     stacks.map(|stack| of_place(stack.place)).collect()
@@ -187,8 +189,8 @@ mod tests {
         let view = View::new("s", warp, 9, [(4, one(3.0)), (0, one(3.0))]);
         let found = of_boxes(&view, &scene, &camera, [3, 3]);
         let margin = f64::from(2.0 * peelnet_scene::BOX_MARGIN);
-        let expected = Range::from_depths([2.0 - margin, 4.0 + margin].map(|z: f64| warp.apply(z)));
-        assert_eq!(found, [expected, Range::WHOLE]);
+        let ends = [2.0 - margin, 4.0 + margin].map(|z: f64| warp.apply(z));
+        assert_eq!(found, [Scale::from_ends(ends), Scale::WHOLE]);
     }
 
     /// A fragment of the frame before is seen two pixels further, and not three.
@@ -198,10 +200,10 @@ mod tests {
         let before = View::new("s", warp, 64, [(0, one(3.0)), (8 + 1, one(5.0))]);
         let lists = [2, 3, 4, 16].map(|place| (place, one(3.0)));
         let view = View::new("s", warp, 64, lists);
-        let of = |depths: &[f64]| Range::from_depths(depths.iter().map(|&z| warp.apply(z)));
+        let of = |ends: [f64; 2]| Scale::from_ends(ends.map(|z| warp.apply(z)));
         let found = of_last(&view, &before, 8, 8);
-        let both = of(&[3.0, 5.0]);
-        assert_eq!(found, [both, of(&[5.0]), Range::WHOLE, both]);
+        let both = of([3.0, 5.0]);
+        assert_eq!(found, [both, of([5.0; 2]), Scale::WHOLE, both]);
     }
 
     /// Where all absorbance lies at one depth, that depth is the middle of half of the scale.

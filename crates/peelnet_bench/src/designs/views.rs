@@ -19,7 +19,7 @@ use peelnet_core::{
     fragment::Fragment,
     methods::{
         over,
-        slabs::{Extent, Range},
+        slabs::{Extent, Scale},
     },
 };
 use peelnet_model::Model;
@@ -52,9 +52,9 @@ pub struct View {
     pub(super) stacks: Vec<Stack>,
     /// None where the surfaces need more memory than there is.
     shown: Option<Shown>,
-    /// Of each pixel with fragments, the ranges of depth that boxes and the last frame give it. Empty of a view of lists.
-    boxes: Vec<Range>,
-    last: Vec<Range>,
+    /// Of each pixel with fragments, the scales of depth that boxes and the last frame give it. Empty of a view of lists.
+    boxes: Vec<Scale>,
+    last: Vec<Scale>,
     quantiles: Option<Quantiles>,
     /// The same view after each of [`MOTIONS`]; empty of a view of lists.
     after: Vec<View>,
@@ -71,14 +71,14 @@ impl Stacked<'_> {
         &self.view.stacks[self.number].fragments
     }
 
-    pub(super) fn extent(&self, source: Source) -> Extent {
-        let given = |found: &[Range]| {
+    /// What a design's slabs are cut by here.
+    pub(super) fn extent(&self, source: Source, of_design: Extent) -> Extent {
+        let given = |found: &[Scale]| {
             let found = found.get(self.number);
-            found.map_or(Extent::Frame, |&range| Extent::Given(range))
+            found.map_or(Extent::Frame, |&scale| Extent::Given(scale))
         };
         match source {
-            Source::Pixel => Extent::Pixel,
-            Source::Frame | Source::Quantiles => Extent::Frame,
+            Source::Pixel | Source::Ends | Source::Frame | Source::Quantiles => of_design,
             Source::Boxes => given(&self.view.boxes),
             Source::Last => given(&self.view.last),
         }

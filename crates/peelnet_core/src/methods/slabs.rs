@@ -5,7 +5,9 @@
 //! own slab the nearest and the farthest layer are known, and up to eight layers of a pixel are. What lies between them is
 //! bounded by its mean depth (Markov's inequality), and only where between the bounds the truth lies is guessed: see [`Interior`].
 //!
-//! Three geometry passes: the range, the sums and records, the colours. Records are levels of depth and opacity under MAX blending
+//! Slabs are cut where the layers are ([`Scale`]): a first pass sums the absorbance of eight bins of the frame's depth.
+//!
+//! Three geometry passes: the bins, the sums and records, the colours. Records are levels of depth and opacity under MAX blending
 //! ([`ExtremeCode`]). The shader is `learned/slabs.wgsl`, with the file of a [`Layout`], such as `slabs_small.wgsl`.
 
 use super::{Point, anchored::composite_weighted, known::KnownFragment, point, points};
@@ -20,8 +22,14 @@ use serde::{Deserialize, Serialize};
 /// Slabs of a pixel, at most.
 pub const MAX_SLABS: usize = 8;
 
-/// Levels of the range of depths, less one: 8 bits for either end.
-pub const RANGE_TOP: f64 = 255.0;
+/// Levels of 8 bits, less one.
+const TOP: f64 = 255.0;
+
+/// Bins of the frame's depth, at most.
+pub const MAX_BINS: usize = 16;
+
+/// What is seen of a bin that has fragments, at least: where little light passes, order still counts a little.
+const LEAST_SEEN: f64 = 1.0 / 256.0;
 
 /// A slab: where it ends, and what is kept of it beside its absorbance.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -34,15 +42,17 @@ pub struct Kept {
     pub farthest: bool,
 }
 
-/// The range of depths that is cut into slabs.
+/// The scale of depth that is cut into slabs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Extent {
-    /// That of the pixel's fragments, in 8 bits for either end: a geometry pass more.
-    Pixel,
+    /// The absorbances of so many bins of the frame's depth, in 8 bits each ([`Scale::from_bins`]): a geometry pass more.
+    Bins(usize),
+    /// From the pixel's nearest fragment to its farthest, in 8 bits for either end: a geometry pass more.
+    Ends,
     /// That of the frame's transparent objects.
     Frame,
-    /// What something else found for the pixel, in as many bits.
-    Given(Range),
+    /// What something else found for the pixel, in 8 bits for either end.
+    Given(Scale),
 }
 
 /// What is kept of a pixel.
@@ -90,24 +100,24 @@ impl Layout {
 }
 
 impl Design {
-    /// 30 bytes a pixel, colours included: three targets beside the range.
+    /// 36 bytes a pixel, colours included: three targets beside the bins.
     pub const SMALL: Self = Self {
-        slabs: &[until(0.15, true), until(0.5, false), until(1.0, false)],
+        slabs: &[until(0.525, true), until(0.745, false), until(1.0, false)],
         records: FARTHEST_CODE,
-        extent: Extent::Pixel,
+        extent: Extent::Bins(8),
         apart: false,
     };
-    /// 34 bytes a pixel, three targets beside the range. The first slab is the narrowest: what is seen most lies in it.
+    /// 40 bytes a pixel, three targets beside the bins.
     pub const MEDIUM: Self = Self {
-        slabs: &[until(0.15, true), until(0.55, true), until(1.0, true)],
+        slabs: &[until(0.5, true), until(0.78, true), until(1.0, true)],
         ..Self::SMALL
     };
-    /// 42 bytes a pixel, four targets beside the range: as much as one pass of plain WebGPU writes.
+    /// 48 bytes a pixel, four targets beside the bins: as much as one pass of plain WebGPU writes.
     pub const LARGE: Self = Self {
         slabs: &[
-            until(0.12, true),
-            until(0.4, true),
-            until(0.75, true),
+            until(0.34, true),
+            until(0.63, true),
+            until(0.8, true),
             until(1.0, true),
         ],
         ..Self::SMALL
@@ -125,8 +135,12 @@ impl Design {
     pub fn bytes(&self) -> u32 {
         let kept = |k: &Kept| [true, k.mean, k.nearest, k.farthest];
         let channels: u32 = self.slabs.iter().flat_map(kept).map(u32::from).sum();
-        let range = if self.extent == Extent::Frame { 0 } else { 2 };
-        range + 2 * channels + 8 * (1 + u32::from(self.apart))
+        let scale = match self.extent {
+            Extent::Frame => 0,
+            Extent::Ends | Extent::Given(_) => 2,
+            Extent::Bins(bins) => bins as u32,
+        };
+        scale + 2 * channels + 8 * (1 + u32::from(self.apart))
     }
 
     fn begin(&self, slab: usize) -> f64 {
@@ -146,43 +160,91 @@ struct Place {
     bin: u32,
 }
 
-/// The range of a pixel's fragments in levels of depth: rounded away from each other, and never empty.
+/// A pixel's own scale of depth, 0 … 1, that is cut into slabs: linear from each knot to the next.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Range {
-    low: f64,
-    high: f64,
+pub struct Scale {
+    /// Warped depths, rising, and where on the scale they lie.
+    knots: [[f64; 2]; MAX_BINS + 1],
+    last: usize,
+    /// Where nothing is known of opacities, the root of it is the scale: what is in front is seen most.
+    root: bool,
 }
 
-impl Range {
-    pub const WHOLE: Self = Self {
-        low: 0.0,
-        high: RANGE_TOP,
-    };
+impl Scale {
+    pub const WHOLE: Self = Self::linear(-1.0, 1.0);
 
-    /// Of a pixel whose fragments have these warped depths.
-    pub fn from_depths(zetas: impl IntoIterator<Item = f64>) -> Self {
-        let none = (RANGE_TOP, 0.0f64);
+    const fn linear(from: f64, to: f64) -> Self {
+        let mut knots = [[0.0; 2]; MAX_BINS + 1];
+        (knots[0], knots[1]) = ([from, 0.0], [to, 1.0]);
+        Self {
+            knots,
+            last: 1,
+            root: true,
+        }
+    }
+
+    /// From the nearest to the farthest of a pixel's fragments, rounded away from each other to levels, and never empty.
+    pub fn from_ends(zetas: impl IntoIterator<Item = f64>) -> Self {
+        let none = (TOP, 0.0f64);
         let (low, high) = zetas.into_iter().fold(none, |(low, high), zeta| {
-            let level = level(zeta);
+            let level = TOP * (zeta * 0.5 + 0.5);
             (low.min(level.floor()), high.max(level.ceil()))
         });
-        Self { low, high }
+        let [from, to] = [low, high.max(low + 1.0)].map(|level| 2.0 * level / TOP - 1.0);
+        Self::linear(from, to)
     }
 
-    /// What the targets of the range hold: the lower end counted from the far end, and the upper one, 0 … 1.
-    pub fn stored(&self) -> [f64; 2] {
-        [RANGE_TOP - self.low, self.high].map(|level| level / RANGE_TOP)
+    /// Of the absorbances of bins of the frame's depth, nearest first. Each bin takes as much of the scale as the root of what is seen of it; an
+    /// empty one takes nothing. Where all are empty, the scale is the frame's.
+    pub fn from_bins(absorbances: &[f64]) -> Self {
+        let bins = absorbances.len().min(MAX_BINS);
+        let (mut front, mut passed) = (0.0f64, 0.0);
+        let mut scale = Self {
+            last: bins,
+            root: false,
+            ..Self::WHOLE
+        };
+        for (k, &b) in absorbances.iter().take(bins).enumerate() {
+            scale.knots[k] = [2.0 * k as f64 / bins as f64 - 1.0, passed];
+            if b > 0.0 {
+                let seen = (-front).exp() - (-front - b).exp();
+                passed += seen.max(LEAST_SEEN).sqrt();
+            }
+            front += b;
+        }
+        if passed <= 0.0 {
+            return Self::WHOLE;
+        }
+        scale.knots[bins] = [1.0, passed];
+        scale.knots.iter_mut().for_each(|knot| knot[1] /= passed);
+        scale
     }
 
-    /// Where in the range a warped depth lies, 0 … 1.
+    /// Where on the scale a warped depth lies.
     pub fn place(&self, zeta: f64) -> f64 {
-        let extent = (self.high - self.low).max(1.0);
-        ((level(zeta) - self.low) / extent).clamp(0.0, 1.0)
+        let knots = &self.knots[..=self.last];
+        let above = knots.iter().position(|knot| knot[0] >= zeta);
+        let k = above.unwrap_or(self.last).max(1);
+        let ([z0, s0], [z1, s1]) = (knots[k - 1], knots[k]);
+        let place = s0 + (s1 - s0) * ((zeta - z0) / (z1 - z0)).clamp(0.0, 1.0);
+        if self.root { place.sqrt() } else { place }
     }
 }
 
-fn level(zeta: f64) -> f64 {
-    RANGE_TOP * (zeta * 0.5 + 0.5)
+/// Levels of 8 bits that an absorbance of 1 is.
+pub const BIN_LEVELS: f64 = 32.0;
+
+/// What 8-bit targets hold of so many bins of a pixel's depth, 0 … 255: whole levels, so that no order of adding changes a sum.
+pub fn bins_of(fragments: &[Point], bins: usize) -> Vec<f64> {
+    let mut all = vec![0.0; bins];
+    for &(b, zeta, _) in fragments {
+        let place = (0.5 + 0.5 * zeta) * bins as f64;
+        let bin = (place.max(0.0) as usize).min(bins - 1);
+        // At least one: a bin with any fragment is not empty.
+        let level = (BIN_LEVELS * b + 0.5).floor().max(1.0);
+        all[bin] = (all[bin] + level).min(TOP);
+    }
+    all
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -216,7 +278,7 @@ pub struct Interior {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Slabs {
     design: Design,
-    pub range: Range,
+    scale: Scale,
     slabs: [Slab; MAX_SLABS],
 }
 
@@ -224,10 +286,15 @@ impl Slabs {
     pub fn gather(fragments: &[Point], design: Design, precision: SumPrecision) -> Self {
         let mut all = Self {
             design,
-            range: match design.extent {
-                Extent::Pixel => Range::from_depths(fragments.iter().map(|f| f.1)),
-                Extent::Frame => Range::WHOLE,
-                Extent::Given(range) => range,
+            scale: match design.extent {
+                Extent::Bins(bins) => {
+                    let levels = bins_of(fragments, bins).into_iter();
+                    let absorbances: Vec<f64> = levels.map(|l| l / BIN_LEVELS).collect();
+                    Scale::from_bins(&absorbances)
+                }
+                Extent::Ends => Scale::from_ends(fragments.iter().map(|f| f.1)),
+                Extent::Frame => Scale::WHOLE,
+                Extent::Given(scale) => scale,
             },
             slabs: Default::default(),
         };
@@ -253,7 +320,7 @@ impl Slabs {
     }
 
     fn place(&self, absorbance: f64, zeta: f64) -> Place {
-        let (t, records) = (self.range.place(zeta), &self.design.records);
+        let (t, records) = (self.scale.place(zeta), &self.design.records);
         let inner = self.design.slabs.iter().take(self.design.slabs.len() - 1);
         let slab = inner.filter(|kept| t >= kept.end).count();
         let [begin, end] = [self.design.begin(slab), self.design.slabs[slab].end];

@@ -7,20 +7,20 @@ use peelnet_core::{
     methods::{
         known::KnownFragment,
         points,
-        slabs::{self, Design, Interior, Layout, Slabs},
+        slabs::{self, Design, Extent, Interior, Layout, Slabs, bins_of},
     },
 };
 
 /// Keeps a share of two absorbances that are both 0 finite.
 const FLOOR: f64 = 1e-6;
 
-const OF_DEPTH: &str = "of the depth between the slab's ends";
+const OF_DEPTH: &str = "of the way between the slab's ends";
 
 const OF_ABSORBANCE: &str = "of the absorbance between the slab's ends";
 
 const ROOT_OWN: &str = "root of the fragment's absorbance";
 
-const IN_SLABS: &str = "half of the depth between the slab's ends, in slabs";
+const IN_SLABS: &str = "half of the way between the slab's ends, in slabs";
 
 /// How much lies between a slab's ends, where the fragment lies, what is known of the share in front, how far apart the ends are, and how
 /// the absorbances compare.
@@ -31,7 +31,7 @@ pub static NINE: [&Feature<Interior>; 9] = [
         "sqrt(between.absorbance)",
         |between| between.absorbance.sqrt(),
     ),
-    &Feature::new("depth_fraction", OF_DEPTH, "between.place", |b| b.place),
+    &Feature::new("place_fraction", OF_DEPTH, "between.place", |b| b.place),
     &Feature::new("mean_fraction", OF_DEPTH, "between.mean", |b| b.mean),
     &Feature::new("share_low", OF_ABSORBANCE, "between.low", |b| b.bounds[0]),
     &Feature::new("share_high", OF_ABSORBANCE, "between.high", |b| b.bounds[1]),
@@ -111,8 +111,13 @@ impl NetworkInputs for SlabInputs {
             let all = [&mut a, &mut firsts, &mut near, &mut far].into_iter();
             all.zip(slab).for_each(|(all, x)| all.push(x as f32));
         }
-        let range = slabs.range.stored().map(|x| x as f32).to_vec();
-        let mut targets = vec![("range", range)];
+        let mut targets = Vec::new();
+        if let Extent::Bins(bins) = self.design.extent {
+            let bins = bins_of(&points, bins);
+            let bins: Vec<f32> = bins.into_iter().map(|x| x as f32 / 255.0).collect();
+            let (front, back) = bins.split_at(4);
+            targets.extend([("bins_front", front.to_vec()), ("bins_back", back.to_vec())]);
+        }
         match self.layout() {
             Layout::Small => {
                 a.push(firsts.remove(0));
@@ -158,8 +163,8 @@ static SMALL: Surroundings = Surroundings {
     before: ZETA,
     passes: &passes(
         &[ABSORBANCES, NEAREST, sum("firsts", "rg16float", "s.firsts")],
-        &["range", "absorbances", "nearest", "firsts"],
-        "peelnet_fragment(alpha, zeta, range, absorbances, nearest, firsts).x",
+        &["bins_front", "bins_back", "absorbances", "nearest", "firsts"],
+        "peelnet_fragment(alpha, peelnet_in_pixel(zeta, bins_front, bins_back), absorbances, nearest, firsts).x",
     ),
     resolve: "peelnet_resolve(sums, absorbances.x + absorbances.y + absorbances.z, background)",
 };
@@ -172,8 +177,8 @@ static MEDIUM: Surroundings = Surroundings {
             most_and_sum("nearest", "s.nearest"),
             most_and_sum("farthest", "s.farthest"),
         ],
-        &["range", "absorbances", "nearest", "farthest"],
-        "peelnet_fragment(alpha, zeta, range, absorbances, nearest, farthest).x",
+        &["bins_front", "bins_back", "absorbances", "nearest", "farthest"],
+        "peelnet_fragment(alpha, peelnet_in_pixel(zeta, bins_front, bins_back), absorbances, nearest, farthest).x",
     ),
     ..SMALL
 };
@@ -187,8 +192,8 @@ static LARGE: Surroundings = Surroundings {
             most("farthest", HALF, LEAST, "s.farthest"),
             sum("firsts", HALF, "s.firsts"),
         ],
-        &["range", "absorbances", "nearest", "farthest", "firsts"],
-        "peelnet_fragment(alpha, zeta, range, absorbances, nearest, farthest, firsts).x",
+        &["bins_front", "bins_back", "absorbances", "nearest", "farthest", "firsts"],
+        "peelnet_fragment(alpha, peelnet_in_pixel(zeta, bins_front, bins_back), absorbances, nearest, farthest, firsts).x",
     ),
     resolve: "peelnet_resolve(sums, absorbances.x + absorbances.y + absorbances.z + absorbances.w, background)",
     ..SMALL
@@ -199,12 +204,15 @@ const fn passes(
     reads: &'static [&'static str],
     call: &'static str,
 ) -> [Pass; 3] {
-    const RANGE: &[Target] = &[most("range", "rg8unorm", 0.0, "r")];
-    let range = value("r", ValueKind::Pair, "peelnet_pixel_range(zeta)");
-    let in_range = statistics("peelnet_statistics(alpha, zeta, range)");
+    const BINS: &[Target] = &[
+        sum("bins_front", "rgba8unorm", "bins.front"),
+        sum("bins_back", "rgba8unorm", "bins.back"),
+    ];
+    let bins = value("bins", ValueKind::Bins, "peelnet_bins(alpha, zeta)");
+    let in_pixel = statistics("peelnet_statistics(alpha, peelnet_in_pixel(zeta, bins_front, bins_back))");
     [
-        pass("range", &[], range, RANGE),
-        pass("statistics", &["range"], in_range, targets),
+        pass("range", &[], bins, BINS),
+        pass("statistics", &["bins_front", "bins_back"], in_pixel, targets),
         pass("weights", reads, weight(call), SUMS),
     ]
 }

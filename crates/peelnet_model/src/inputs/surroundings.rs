@@ -55,6 +55,8 @@ pub enum ValueKind {
     Number,
     /// Two numbers.
     Pair,
+    /// The text's `PeelnetBins`.
+    Bins,
     /// The text's `PeelnetStatistics`.
     Statistics,
 }

@@ -19,6 +19,8 @@ pub enum Blend {
     Max,
     /// `max(dst, src)` of 8-bit channels, 0 … 1, from 0.
     MaxBytes,
+    /// `dst + src` of 8-bit channels, at most 1, from 0.
+    AddBytes,
 }
 
 impl Blend {
@@ -38,14 +40,14 @@ impl Blend {
         let under = component(F::DstAlpha, F::One, O::Add);
         let (clear, least) = ([0.0, 0.0, 0.0, 1.0], -f64::from(HALF_MAX));
         match self {
-            Self::Add => ([0.0; 4], [add, add]),
+            Self::Add | Self::AddBytes => ([0.0; 4], [add, add]),
+            Self::MaxBytes => ([0.0; 4], [max, max]),
             Self::Transmit => ([1.0; 4], [transmit, transmit]),
             Self::AddTransmit => (clear, [add, transmit_alpha]),
             Self::Over => (clear, [over, transmit_alpha]),
             Self::Under => (clear, [under, transmit_alpha]),
             Self::MaxAdd => ([least, least, least, 0.0], [max, add]),
             Self::Max => ([least; 4], [max, max]),
-            Self::MaxBytes => ([0.0; 4], [max, max]),
         }
     }
 

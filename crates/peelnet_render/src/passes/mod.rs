@@ -66,9 +66,9 @@ impl Target {
     pub const fn format(&self) -> wgpu::TextureFormat {
         use wgpu::TextureFormat as F;
         match (self.blend, self.channels, self.full) {
-            (Blend::MaxBytes, 1, _) => F::R8Unorm,
-            (Blend::MaxBytes, 2, _) => F::Rg8Unorm,
-            (Blend::MaxBytes, _, _) => F::Rgba8Unorm,
+            (Blend::MaxBytes | Blend::AddBytes, 1, _) => F::R8Unorm,
+            (Blend::MaxBytes | Blend::AddBytes, 2, _) => F::Rg8Unorm,
+            (Blend::MaxBytes | Blend::AddBytes, _, _) => F::Rgba8Unorm,
             (_, 1, false) => F::R16Float,
             (_, 2, false) => F::Rg16Float,
             (_, _, false) => F::Rgba16Float,

@@ -29,7 +29,10 @@ fn worst(f: &[Fragment], design: Design, guess: f64) -> f32 {
 fn two_layers_of_each_slab_are_known() {
     let mut random = Random::new(3, &[]);
     for seed in 0..600 {
-        let design = Layout::ALL[seed % 3].design();
+        let design = Design {
+            extent: Extent::Ends,
+            ..Layout::ALL[seed % 3].design()
+        };
         let mut places = Vec::new();
         for slab in 0..design.slabs.len() {
             let [begin, end] = [design.begin(slab), design.slabs[slab].end];
@@ -55,7 +58,7 @@ fn layouts_are_found() {
         design.apart = true;
         assert_eq!(design.layout(), None);
     }
-    assert_eq!(Layout::ALL.map(|l| l.design().bytes()), [30, 34, 42]);
+    assert_eq!(Layout::ALL.map(|l| l.design().bytes()), [36, 40, 48]);
 }
 
 /// Two passes of a renderer may round a depth otherwise. What was recorded is recognised all the same, but at a border between two slabs.
@@ -119,4 +122,46 @@ fn bounds_hold() {
     }
     assert!(guessed > 1000, "only {guessed} fragments are guessed");
     assert!(width < 0.75 * unbounded, "{width} of {unbounded}");
+}
+
+/// Bins without fragments take nothing of a pixel's scale; of the others, the share of the root of what is seen of them.
+#[test]
+fn bins_share_the_scale_by_what_is_seen_of_them() {
+    let mut bins = [0.0; 8];
+    (bins[2], bins[5]) = (-0.75f64.ln(), 40.0);
+    let scale = Scale::from_bins(&bins);
+    let [of_first, of_second] = [0.25f64.sqrt(), 0.75f64.sqrt()];
+    let first = of_first / (of_first + of_second);
+    for (bin, expected) in [
+        (0.0, 0.0),
+        (2.0, 0.0),
+        (2.5, first / 2.0),
+        (3.0, first),
+        (5.0, first),
+        (5.5, (1.0 + first) / 2.0),
+        (6.0, 1.0),
+        (8.0, 1.0),
+    ] {
+        let off = scale.place(bin / 4.0 - 1.0) - expected;
+        assert!(off.abs() < 1e-12, "{bin} is off by {off}");
+    }
+    assert_eq!(Scale::from_bins(&[0.0; 8]), Scale::WHOLE);
+}
+
+/// Layers in two bins far from each other are cut as if there were nothing between them, and a layer apart changes little.
+#[test]
+fn a_layer_apart_leaves_the_others_their_slabs() {
+    let mut random = Random::new(5, &[]);
+    for _ in 0..200 {
+        let places: Vec<_> = (0..12).map(|_| f64::from(random.between(0.8, 1.0))).collect();
+        let mut f = at(&places, 0.4, &mut random);
+        f.push(Fragment::new(0.5, 0.15, [1.0; 3]));
+        let f = over::sorted(&f);
+        let of_ends = Design {
+            extent: Extent::Ends,
+            ..Design::LARGE
+        };
+        let [bins, ends] = [Design::LARGE, of_ends].map(|design| worst(&f, design, 0.5));
+        assert!(bins < 0.06, "{bins}, and {ends} by the ends");
+    }
 }

@@ -1,5 +1,5 @@
-//! `deep-small`, `deep-medium`, `deep-large`: known layers without ordered access, in three or four slabs of the pixel's own range, and a
-//! learned guess of what lies between them, drawn with the exported text itself. `slabs` is the same without a network.
+//! `deep-small`, `deep-medium`, `deep-large`: known layers without ordered access, in three or four slabs cut where the pixel's layers are, and
+//! a learned guess of what lies between them, drawn with the exported text itself. `slabs` is the same without a network.
 
 mod expectations;
 pub mod reference;
@@ -10,13 +10,13 @@ use peelnet_model::inputs::{SlabInputs, slab_surroundings};
 
 const KEEP: Parameter = Parameter::words(
     "keep",
-    "large (default, 42 bytes a pixel): four slabs; medium (34 bytes): three; small (30 bytes): three, and the farthest fragment of the nearest alone",
+    "large (default, 48 bytes a pixel): four slabs; medium (40 bytes): three; small (36 bytes): three, and the farthest fragment of the nearest alone",
     &["large", "medium", "small"],
 );
 
 const RANGE: Parameter = Parameter::words(
     "range",
-    "what is cut into slabs: the pixel's own range of depth (pixel, by default), found by a geometry pass of its own; from where the pixel's ray enters the first box around a transparent part to where it leaves the last (boxes), found by a pass over boxes; or the frame's (frame), with a pass less and several times the error",
+    "what slabs are cut by: the absorbances of eight bins of depth in the pixel (pixel, by default), found by a geometry pass of its own; depth from where the pixel's ray enters the first box around a transparent part to where it leaves the last (boxes), found by a pass over boxes; or depth in the frame (frame), with a pass less and several times the error",
     &["pixel", "boxes", "frame"],
 );
 
@@ -43,7 +43,7 @@ pub(super) const METHOD: Method = Method {
     expectations: expectations::METHOD,
     ..slabs(
         "slabs",
-        "slabs of depth in the pixel's range, each with its own sums and known ends; no network",
+        "slabs of depth where the pixel's layers are, each with its own sums and known ends; no network",
     )
 };
 
@@ -51,7 +51,7 @@ pub(super) const SMALL: Method = Method {
     expectations: expectations::SMALL,
     ..slabs(
         "deep-small",
-        "known layers of three slabs and a learned guess between them, 30 bytes a pixel",
+        "known layers of three slabs and a learned guess between them, 36 bytes a pixel",
     )
 };
 
@@ -60,7 +60,7 @@ pub(super) const MEDIUM: Method = Method {
     expectations: expectations::MEDIUM,
     ..slabs(
         "deep-medium",
-        "the same in 34 bytes a pixel: the one to ship",
+        "the same in 40 bytes a pixel: the one to ship",
     )
 };
 
@@ -69,7 +69,7 @@ pub(super) const LARGE: Method = Method {
     expectations: expectations::LARGE,
     ..slabs(
         "deep-large",
-        "the same of four slabs, 42 bytes a pixel: the most accurate",
+        "the same of four slabs, 48 bytes a pixel: the most accurate",
     )
 };
 
@@ -119,27 +119,40 @@ fn passes(p: &mut Passes<'_>) {
     // The shaders' own case is the largest, over a range of its own.
     let is_large = layout == Layout::Large;
     let own_layout = (!is_large).then_some(layout.name());
-    let features = || own_layout.into_iter().chain(framed.then_some("frame"));
+    let source = match (framed, boxes) {
+        (true, _) => Some("frame"),
+        (_, true) => Some("boxes"),
+        _ => None,
+    };
+    let features = || own_layout.into_iter().chain(source);
     let sums = p.target(SUMS);
     let kept = p.targets(statistics(layout));
-    let range = (!framed).then_some(Target::half("range", 2, Blend::MaxBytes));
-    let range = p.targets(range);
+    let found = if framed {
+        vec![]
+    } else if boxes {
+        vec![Target::half("range", 2, Blend::MaxBytes)]
+    } else {
+        let bins = ["bins_front", "bins_back"];
+        let of_bins = |name| Target::half(name, 4, Blend::AddBytes);
+        bins.map(of_bins).into()
+    };
+    let found = p.targets(found);
     if boxes {
         let pass = p.geometry("methods::slabs::boxes", Needs::DEPTH).boxes();
-        pass.label("range").writes(range.iter().copied());
+        pass.label("range").writes(found.iter().copied());
     } else if !framed {
-        p.geometry("methods::slabs::range", Needs::DEPTH)
-            .writes(range.iter().copied());
+        p.geometry("methods::slabs::range", Needs::OPACITY)
+            .writes(found.iter().copied());
     }
     let first = kept[0];
     p.geometry("methods::slabs::statistics", Needs::OPACITY)
         .features(features())
-        .reads(range.iter().copied())
+        .reads(found.iter().copied())
         .writes(kept.iter().copied());
     p.geometry("methods::slabs::gather", Needs::COLOR)
         .features(features())
         .reads(kept)
-        .reads(range)
+        .reads(found)
         .writes([sums]);
     p.resolve("methods::slabs::resolve", [sums, first])
         .features((!is_large).then_some("three"));

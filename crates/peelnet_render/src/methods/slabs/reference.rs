@@ -28,7 +28,7 @@ fn design_and_guess<'m>(
     let extent = match RANGE.word(spec) {
         "boxes" => return None,
         "frame" => Extent::Frame,
-        _ => Extent::Pixel,
+        _ => design.extent,
     };
     Some((Design { extent, ..design }, guess))
 }

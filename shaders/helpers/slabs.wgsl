@@ -1,0 +1,12 @@
+// Where a fragment lies in its pixel, 0 .. 1, on a scale of depth of which no opacities are known: what is in front is seen most.
+
+fn in_frame(zeta: f32) -> f32 {
+    return sqrt(0.5 * zeta + 0.5);
+}
+
+// range: of the pixel, as the pass over boxes left it.
+fn in_boxes(zeta: f32, range: vec2f) -> f32 {
+    let ends = floor(range * 255.0 + 0.5);
+    let low = 255.0 - ends.x;
+    return sqrt(clamp((127.5 * (zeta + 1.0) - low) / max(ends.y - low, 1.0), 0.0, 1.0));
+}
