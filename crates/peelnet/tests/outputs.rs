@@ -76,6 +76,37 @@ fn what_is_replaced_is_said() {
     assert!(said.contains("replaced d (a dataset)"), "{said}");
 }
 
+/// Results and pictures of two runs never mix: one command at a time writes into a folder, and pictures that a later run left are known.
+#[test]
+fn a_folder_of_results_is_of_one_run() {
+    let folder = Folder::new(&[("two.toml", SCENE)]);
+    let bench = "bench two.toml --methods wboit-eq9 --frames 0 --size 8x8 --out b";
+    folder.prints(bench);
+    folder.prints("bench redraw --out b");
+    let held = peelnet_train::OutputLock::take(&folder.at("b/images")).unwrap();
+    for line in [
+        bench,
+        "bench redraw --out b",
+        "bench scaling --methods wboit-eq9 --out b --force",
+        "bench effects two.toml --out b --force",
+        "bench path two.toml --methods wboit-eq9 --frames 1 --size 8x8 --out b --force",
+        "stress --methods wboit-eq9 --out b",
+        "run two.toml --out b --force",
+    ] {
+        let said = folder.says(line, 1);
+        assert!(said.contains("b/images: another command writes"), "{said}");
+    }
+    drop(held);
+    folder.prints("render two.toml --size 4x4 --out b/images/two-wboit-eq9.png");
+    let said = folder.says("bench redraw --out b", 1);
+    assert!(
+        said.contains("two-wboit-eq9.png: is not the picture"),
+        "{said}"
+    );
+    std::fs::remove_dir_all(folder.at("b/images")).unwrap();
+    folder.prints("bench redraw --out b");
+}
+
 /// Until a signal has ended a command that nobody waits for: a second is promised, and machines that run tests are slow.
 #[cfg(unix)]
 const SIGNAL_DEADLINE: std::time::Duration = std::time::Duration::from_secs(5);

@@ -65,6 +65,9 @@ pub struct Row {
     /// Hash of what the scene shows, see [`Scene::content`](peelnet_scene::Scene::content); empty in rows of before there was one.
     #[serde(default)]
     pub scene_content: String,
+    /// SHA-256 of the picture in `images/`, which is drawn of view 0.
+    #[serde(default)]
+    pub picture: Option<String>,
 }
 
 /// Of rows that were measured before there were more.
