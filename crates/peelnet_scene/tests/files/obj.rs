@@ -163,7 +163,7 @@ fn bad_normals_are_computed_and_flat_triangles_left_out() {
 /// One number is grey, a halo's factor is an opacity, an exponent of 0 is no highlight, colours end at 1; marks are no statements.
 #[test]
 fn materials_as_old_exporters_write_them() {
-    let mtl = "\u{feff}newmtl m\nKd 0.5\nKs 0.8\nNs 0\nd -halo 0.25\nnewmtl n\nKd 2 1 0\nd -halo 1\nKs 0.8 0.8 0.8\nNs 9\nPr 0.3\nPm 0.8\nKe 2 0 1\n";
+    let mtl = "\u{feff}newmtl m\nKd 0.5\nKs 0.8\nNs 0\nd -halo 0.25\nnewmtl n\nKd 2 1 0\nd -halo 1\nKs 0.8 0.8 0.8\nNs 9\nPr 0.3\nPm 0.8\nKe 2 0 1\nnewmtl o\nPm 7\nnewmtl p\nKe -1\n";
     let obj = format!("\u{feff}mtllib a.mtl\n{QUAD}usemtl m\nf 1 2 3\nusemtl n\nf 1 3 4\n");
     let (mesh, warnings, _) = load(&obj, mtl);
     let [m, n] = [0, 1].map(|i| &mesh.parts[i].material);
@@ -176,7 +176,7 @@ fn materials_as_old_exporters_write_them() {
     assert_eq!(n.lighting, Lighting::Unlit);
     let warnings = warnings.join("\n");
     assert_eq!(warnings.matches("-halo").count(), 1, "{warnings}");
-    assert!(warnings.contains("taken as 1: 'n'"), "{warnings}");
+    assert_says(&warnings, "nearest in it: 'n' & 'o' & 'p'");
     // The same where the text is not UTF-8: the first line is a vertex still.
     let latin = [b"\xef\xbb\xbf", QUAD.as_bytes(), b"# caf\xe9\nf 1 2 3\n"].concat();
     let (mesh, ..) = load_mesh(&[("a.obj", &latin)]).unwrap();

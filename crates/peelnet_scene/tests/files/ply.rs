@@ -159,6 +159,22 @@ fn seams_and_degenerate_faces() {
     assert_says(&warnings.join("\n"), words);
 }
 
+#[test]
+fn bright_colours_are_reported() {
+    let channels = ["x", "y", "z", "red", "green", "blue"].map(|c| format!("property float {c}\n"));
+    let lines = format!(
+        "element vertex 3\n{}element face 1\nproperty list uchar int vertex_indices\n",
+        channels.concat()
+    );
+    let body = "0 0 0 255 0 0\n1 0 0 0 -1 0\n0 1 0 0 0.5 0\n3 0 1 2\n";
+    let (mesh, warnings, _) = load_text(&header("ascii", &lines), body);
+    assert_eq!(
+        mesh.colors[..2],
+        [[1.0, 0.0, 0.0, 1.0], [0.0, 0.0, 0.0, 1.0]]
+    );
+    assert_says(&warnings.join("\n"), "colours above 1 are taken as 1");
+}
+
 /// What of the square is replaced by what, and words of the error.
 const BAD: &str = "
 ascii => utf => a.ply:2 & header

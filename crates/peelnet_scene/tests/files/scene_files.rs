@@ -38,6 +38,7 @@ fn load(text: &str) -> Result<Scene, String> {
 const BAD: &str = "
 [camera => s.toml:6
 colour = 1 => s.toml:6 & colour
+background = [.8, 1, 1] => s.toml:6 & write 0.8, not .8
 fov_y = 180.0 => camera.fov_y & 180
 fov_y = 1e-40 => camera.fov_y & 0.01 … 179
 [orbit] ; views = 0 => orbit.views & 1
