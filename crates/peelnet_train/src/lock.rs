@@ -4,7 +4,7 @@ use std::fs::{File, OpenOptions, TryLockError};
 use std::io;
 use std::path::{Path, PathBuf};
 
-use peelnet_core::files::{Unfinished, shown};
+use peelnet_core::files::{Unfinished, folder_of, shown};
 
 use crate::error::{TrainError, beside, io as io_error};
 
@@ -15,6 +15,8 @@ use crate::error::{TrainError, beside, io as io_error};
 #[derive(Debug)]
 pub struct OutputLock {
     path: PathBuf,
+    /// Folders that were created for it, innermost first.
+    created: Vec<PathBuf>,
     _file: File,
     _unfinished: Unfinished,
 }
@@ -27,7 +29,11 @@ impl OutputLock {
     pub fn take(out: &Path) -> Result<Self, TrainError> {
         let path = beside(out, "lock");
         let failed = io_error(&path);
-        std::fs::create_dir_all(peelnet_core::files::folder_of(&path)).map_err(&failed)?;
+        let folder = folder_of(&path);
+        let is_new = |a: &&Path| !a.as_os_str().is_empty() && !a.exists();
+        let created = folder.ancestors().take_while(is_new).map(Path::to_owned);
+        let created = created.collect();
+        std::fs::create_dir_all(folder).map_err(&failed)?;
         // No link, whose target would be created, and no device.
         peelnet_core::files::check_file(&path).map_err(&failed)?;
         loop {
@@ -59,6 +65,7 @@ impl OutputLock {
                 return Ok(Self {
                     _unfinished: Unfinished::new(&path),
                     path,
+                    created,
                     _file: file,
                 });
             }
@@ -70,6 +77,10 @@ impl Drop for OutputLock {
     fn drop(&mut self) {
         // While it is still locked. A file that stays is not in the way.
         let _ = std::fs::remove_file(&self.path);
+        for folder in &self.created {
+            // Those that hold something now stay.
+            let _ = std::fs::remove_dir(folder);
+        }
     }
 }
 

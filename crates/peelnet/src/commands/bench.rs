@@ -287,9 +287,14 @@ pub(super) fn compared(
 
 /// A bench's `results.json`, or the folder that holds it.
 pub(super) fn read(path: &Path) -> Result<Results<Bench>, Failure> {
-    Results::read(path).map_err(|e| {
-        let why = error_line(&e);
+    let failed = |why| {
         let text = format!("{why}; make it with: peelnet bench SCENE --out DIR");
         Failure::failed(text)
-    })
+    };
+    let results: Results<Bench> = Results::read(path).map_err(|e| failed(error_line(&e)))?;
+    for (k, row) in results.measured.rows.iter().enumerate() {
+        let checked = row.check();
+        checked.map_err(|why| failed(format!("{}: rows[{k}]: {why}", shown(path))))?;
+    }
+    Ok(results)
 }

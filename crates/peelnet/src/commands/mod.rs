@@ -102,7 +102,7 @@ impl Context<'_> {
         scenes: &[Scene],
     ) -> Result<(OutputLock, Begun), Failure> {
         let begun = self.begin(outputs, scenes)?;
-        Ok((OutputLock::take(&out.join("images"))?, begun))
+        Ok((OutputLock::take(&out.join(".peelnet"))?, begun))
     }
 
     fn scenes(&self, paths: &[PathBuf]) -> Result<Vec<Scene>, Failure> {
