@@ -192,7 +192,10 @@ fn files_that_are_no_models() {
     let foreign = safetensors::serialize(foreign, None).unwrap();
     assert_message(&foreign, "not a peelnet model");
     let text = Model::load("nowhere/m").unwrap_err().to_string();
-    assert!(text.starts_with("nowhere/m: cannot read"), "{text}");
+    assert!(
+        text.starts_with("nowhere/m: there is no such file"),
+        "{text}"
+    );
 }
 
 #[test]

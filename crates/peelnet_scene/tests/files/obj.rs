@@ -2,7 +2,8 @@
 
 use crate::{Loaded, area, assert_all_refused, assert_refused, assert_says, image, load_mesh};
 use glam::{Vec2, Vec3};
-use peelnet_scene::{Lighting, Wrap};
+use peelnet_scene::{Lighting, Maps, Wrap};
+use std::sync::Arc;
 
 fn load(obj: &str, mtl: &str) -> Loaded {
     let files = [("a.obj", obj.as_bytes()), ("a.mtl", mtl.as_bytes())];
@@ -134,6 +135,25 @@ fn images_of_materials() {
     assert_eq!((warnings.len(), used), (2, 4), "{warnings:?}");
     let words = "option -s of map_Bump & map_Ks & Latin-1";
     assert_says(&warnings.join("\n"), words);
+}
+
+/// Strengths of one height field are a texture and a scale each.
+#[test]
+fn strengths_share_their_normals() {
+    let heights = image(&[[0, 0, 0, 255], [255, 255, 255, 255]]);
+    let obj =
+        format!("mtllib a.mtl\n{QUAD}vt 0 0\nusemtl m\nf 1/1 2/1 3/1\nusemtl n\nf 1/1 3/1 4/1\n");
+    let mtl = b"newmtl m\nmap_Bump -bm 3 a.png\nnewmtl n\nmap_Bump -bm -5 a.png\n";
+    let files: [(&str, &[u8]); 3] = [
+        ("a.obj", obj.as_bytes()),
+        ("a.mtl", mtl),
+        ("a.png", &heights),
+    ];
+    let (mesh, ..) = load_mesh(&files).unwrap();
+    let [m, n] = [0, 1].map(|k| &mesh.parts[k].material.maps);
+    let normals = |maps: &Maps| maps.normal.clone().expect("a map");
+    assert!(Arc::ptr_eq(&normals(m), &normals(n)));
+    assert_eq!((m.normal_scale, n.normal_scale), (0.75, -1.25));
 }
 
 /// A library that is missing is a warning; one that a file names a thousand times is read once.
