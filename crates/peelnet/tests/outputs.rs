@@ -101,11 +101,13 @@ fn a_folder_of_results_is_of_one_run() {
     }
     drop(held);
     folder.prints("render two.toml --size 4x4 --out b/images/two-wboit-eq9.png");
-    let said = folder.says("bench redraw --out b", 1);
-    assert!(
-        said.contains("two-wboit-eq9.png: is not the picture"),
-        "{said}"
-    );
+    for line in ["bench redraw --out b", &format!("{bench} --resume")] {
+        let said = folder.says(line, 1);
+        assert!(
+            said.contains("two-wboit-eq9.png: is not the picture"),
+            "{said}"
+        );
+    }
     std::fs::remove_dir_all(folder.at("b/images")).unwrap();
     folder.prints("bench redraw --out b");
     let results = String::from_utf8(folder.read("b/results.json")).unwrap();

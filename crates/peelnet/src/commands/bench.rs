@@ -247,6 +247,7 @@ fn finished(
         }
         .into());
     }
+    check_pictures(&results.measured.rows, folder)?;
     context.console.message(format!(
         "{}: the run has finished with these settings: its results are kept",
         shown(&file)
