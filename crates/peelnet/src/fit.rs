@@ -26,7 +26,7 @@ pub enum Step<'a> {
     Epoch(&'a EpochReport),
 }
 
-/// Trains on datasets and writes the loss curves, also of a run that diverges; the model file has the errors on held-out scenes in it where the datasets hold such.
+/// Trains on datasets and writes the loss curves, also of a run that diverges, but not of one that is interrupted; the model file has the errors on held-out scenes in it where the datasets hold such.
 ///
 /// # Errors
 /// As [`train`], and a dataset that cannot be read.
@@ -70,15 +70,17 @@ pub fn fit(
             return Err(error.into());
         }
     };
+    if outcome.end == End::Interrupted {
+        // The checkpoint has the history. An older model stays, and so do the curves beside it.
+        return Ok(outcome);
+    }
     for path in loss_curves {
         write_curve(path, &outcome.history)?;
     }
-    if outcome.end != End::Interrupted {
-        let held_out = held_out_errors(&outcome.model, datasets)?;
-        if !held_out.is_empty() {
-            outcome.model.meta.held_out = held_out;
-            outcome.model.save(&options.out)?;
-        }
+    let held_out = held_out_errors(&outcome.model, datasets)?;
+    if !held_out.is_empty() {
+        outcome.model.meta.held_out = held_out;
+        outcome.model.save(&options.out)?;
     }
     Ok(outcome)
 }

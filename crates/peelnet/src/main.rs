@@ -15,13 +15,16 @@ mod progress;
 mod summary_text;
 mod values;
 
-use clap::Parser as _;
+use clap::{CommandFactory as _, FromArgMatches as _};
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
     #[cfg(target_os = "linux")]
     set_runtime_folder();
-    let cli = match cli::Cli::try_parse() {
+    let mut command = with_negative_numbers(cli::Cli::command());
+    let parsed = command.try_get_matches_from_mut(std::env::args_os());
+    let parsed = parsed.and_then(|matches| cli::Cli::from_arg_matches(&matches));
+    let cli = match parsed.map_err(|error| error.format(&mut command)) {
         Ok(cli) => cli,
         Err(error) => {
             // Help and version are asked for and go to stdout; everything else is wrong usage.
@@ -44,6 +47,15 @@ fn main() -> ExitCode {
         }
     };
     interrupt::exit_code(code)
+}
+
+/// Takes -1 for a value wherever a value is expected, so that the error is about the value.
+fn with_negative_numbers(command: clap::Command) -> clap::Command {
+    let command = command.mut_args(|arg| {
+        let takes_value = arg.get_action().takes_values() && !arg.is_positional();
+        arg.allow_negative_numbers(takes_value)
+    });
+    command.mut_subcommands(with_negative_numbers)
 }
 
 /// Starts the program anew with `XDG_RUNTIME_DIR` where containers leave it out: Mesa's drivers print an error of their own without it, also

@@ -61,10 +61,20 @@ pub fn methods(text: &str) -> Result<Option<Vec<MethodSpec>>, String> {
     let methods = names.iter().map(|name| name.parse());
     let methods: Result<Vec<MethodSpec>, peelnet_render::RenderError> = methods.collect();
     let methods = methods.map_err(|e| e.to_string())?;
-    match (1..methods.len()).find(|&k| methods[..k].contains(&methods[k])) {
-        Some(k) => Err(format!("{} is named twice; name it once", methods[k])),
-        None => Ok(Some(methods)),
+    for (k, method) in methods.iter().enumerate() {
+        match methods[..k].iter().find(|other| other.is_drawn_as(method)) {
+            None => {}
+            Some(same) if same == method => {
+                return Err(format!("{method} is named twice; name it once"));
+            }
+            Some(other) => {
+                return Err(format!(
+                    "{other} and {method} are one method; name one of them"
+                ));
+            }
+        }
     }
+    Ok(Some(methods))
 }
 
 /// The value of one of these names.

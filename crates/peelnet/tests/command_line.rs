@@ -113,6 +113,10 @@ const REFUSED: &str = "
     1 | train missing --out m | missing
     1 | train own --out m | own: & method deep-medium draws every pixel exactly & recipe thesis
     1 | export missing.safetensors --out w.wgsl | missing.safetensors
+    1 | export cups --out w.wgsl | cups: there is no such file & `peelnet train` wrote
+    2 | render two.toml --out a.png --view -1 | invalid value '-1' for '--view
+    2 | bench two.toml --methods wboit-eq9,wboit-eq9:targets=f16 --out b | wboit-eq9 and wboit-eq9:targets=f16 are one method
+    2 | stress --methods wboit-eq10:factor=3e3,wboit-eq10:factor=3000 | are one method
 
     1 | render key.toml --out a.png | key.toml
     1 | inspect key.toml | key.toml
@@ -132,6 +136,8 @@ const REFUSED: &str = "
     2 | train sound --out sound/_peelnet/manifest.json | --out
     2 | train sound --out n --loss-curve sound/new.csv | --loss-curve
     2 | train sound --out n.svg --loss-curve n.svg | --loss-curve n.svg
+    2 | train sound --out n --loss-curve n/loss.csv | --loss-curve n/loss.csv & on the way
+    1 | extract two.toml --out kept | kept/fragments-00000-two-v0.parquet & is read-only
     1 | train sound --out two.toml | --out two.toml
     1 | train sound --out old | last.safetensors
     1 | train sound --out Cargo | Cargo.lock
@@ -250,11 +256,12 @@ fn folder() -> Folder {
     folder.write_model("other.safetensors", peelnet::Recipe::THESIS);
     folder.prints("export other.safetensors --out other.wgsl");
     folder.prints("render two.toml --size 8x8 --out locked.png");
-    let mut mode = std::fs::metadata(folder.at("locked.png"))
-        .unwrap()
-        .permissions();
-    mode.set_readonly(true);
-    std::fs::set_permissions(folder.at("locked.png"), mode).unwrap();
+    folder.prints("extract two.toml --size 8x8 --out kept");
+    for locked in ["locked.png", "kept/fragments-00000-two-v0.parquet"] {
+        let mut mode = std::fs::metadata(folder.at(locked)).unwrap().permissions();
+        mode.set_readonly(true);
+        std::fs::set_permissions(folder.at(locked), mode).unwrap();
+    }
     folder.write("foreign.exr", b"\x76\x2f\x31\x01\x02\0\0\0a user's own");
     folder.write("secret.txt", [b's'; 64]);
     folder.write("utf16.toml", b"\xff\xfen\0");

@@ -76,6 +76,86 @@ fn what_is_replaced_is_said() {
     assert!(said.contains("replaced d (a dataset)"), "{said}");
 }
 
+/// Results and pictures of two runs never mix: one command at a time writes into a folder, and pictures that a later run left are known.
+#[test]
+fn a_folder_of_results_is_of_one_run() {
+    let folder = Folder::new(&[("two.toml", SCENE)]);
+    let bench = "bench two.toml --methods wboit-eq9 --frames 0 --size 8x8 --out b";
+    folder.prints(bench);
+    folder.prints("bench redraw --out b");
+    let held = peelnet_train::OutputLock::take(&folder.at("b/.peelnet")).unwrap();
+    for line in [
+        bench,
+        "bench redraw --out b",
+        "bench scaling --methods wboit-eq9 --out b --force",
+        "bench effects two.toml --out b --force",
+        "bench path two.toml --methods wboit-eq9 --frames 1 --size 8x8 --out b --force",
+        "stress --methods wboit-eq9 --out b",
+        "run two.toml --out b --force",
+    ] {
+        let said = folder.says(line, 1);
+        assert!(
+            said.contains("b/.peelnet: another command writes"),
+            "{said}"
+        );
+    }
+    drop(held);
+    folder.prints("render two.toml --size 4x4 --out b/images/two-wboit-eq9.png");
+    for line in ["bench redraw --out b", &format!("{bench} --resume")] {
+        let said = folder.says(line, 1);
+        assert!(
+            said.contains("two-wboit-eq9.png: is not the picture"),
+            "{said}"
+        );
+    }
+    std::fs::remove_dir_all(folder.at("b/images")).unwrap();
+    folder.prints("bench redraw --out b");
+    let results = String::from_utf8(folder.read("b/results.json")).unwrap();
+    let edited = results.replace("\"mse_linear\": ", "\"mse_linear\": -");
+    folder.write("b/results.json", edited);
+    for line in ["bench redraw --out b", "recommend two.toml --results b"] {
+        let said = folder.says(line, 1);
+        let words = [
+            "b: rows[1]: `mse_linear` is -",
+            "and lies from 0 to 1e80; make it with",
+        ];
+        assert!(words.iter().all(|word| said.contains(word)), "{said}");
+    }
+}
+
+/// The curve beside an older model stays that model's.
+#[cfg(unix)]
+#[test]
+fn an_interrupted_training_leaves_the_loss_curve() {
+    let folder = Folder::new(&[]);
+    folder.prints("extract --synthetic 3000 --out d");
+    let line = "train d --recipe small --out n --loss-curve n.csv --epochs";
+    folder.prints(&format!("{line} 1"));
+    let before = folder.read("n.csv");
+    // A model is known by its content.
+    assert_eq!(folder.json("inspect n")["kind"], "model");
+    let mut child = folder.command(&format!("{line} 1000000")).spawn().unwrap();
+    std::thread::sleep(std::time::Duration::from_millis(400));
+    let id = child.id().to_string();
+    let sent = std::process::Command::new("kill").arg(&id).status();
+    assert!(sent.unwrap().success());
+    assert_eq!(child.wait().unwrap().code(), Some(143));
+    assert_eq!(folder.read("n.csv"), before);
+}
+
+/// A file that its reader did not take is not written.
+#[test]
+fn a_pipe_without_a_reader_is_an_error() {
+    let folder = Folder::new(&[("two.toml", SCENE)]);
+    let (reader, writer) = std::io::pipe().unwrap();
+    drop(reader);
+    let mut command = folder.command("render two.toml --size 8x8 --out -");
+    let output = command.stdout(writer).output().unwrap();
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    assert!(said.contains("pipe"), "{said}");
+}
+
 /// Until a signal has ended a command that nobody waits for: a second is promised, and machines that run tests are slow.
 #[cfg(unix)]
 const SIGNAL_DEADLINE: std::time::Duration = std::time::Duration::from_secs(5);

@@ -16,6 +16,7 @@ use peelnet_render::{
     Frame, Image, LearnedWeight, MethodOptions, MethodSpec, Profile, milliseconds, of_method,
 };
 use peelnet_scene::Scene;
+use sha2::{Digest as _, Sha256};
 use std::path::Path;
 
 pub use crate::stage::EXACT;
@@ -95,6 +96,31 @@ pub fn image_name(scene: &str, method: &str) -> String {
         plain
     };
     format!("{}-{}.png", plain(scene), plain(method))
+}
+
+fn picture_hash(path: &Path) -> Result<String, EvalError> {
+    let bytes = peelnet_core::files::read(path, u64::MAX);
+    let bytes = bytes.map_err(EvalError::io(path, "read the picture"))?;
+    Ok(peelnet_core::files::hex(&Sha256::digest(bytes)))
+}
+
+/// Checks that the pictures in a folder of results are those of its rows. Pictures that are missing are left out of reports.
+///
+/// # Errors
+/// A picture of another run.
+pub fn check_pictures(rows: &[Row], folder: &Path) -> Result<(), EvalError> {
+    for row in rows {
+        let path = folder
+            .join("images")
+            .join(image_name(&row.scene, &row.method));
+        let Some(drawn) = row.picture.as_ref().filter(|_| path.exists()) else {
+            continue;
+        };
+        if picture_hash(&path)? != *drawn {
+            return Err(EvalError::OtherPicture(path));
+        }
+    }
+    Ok(())
 }
 
 struct Entry<'a> {
@@ -207,9 +233,11 @@ fn draw(
             }
             frame => frame?,
         };
+        let mut picture = None;
         if let (0, Some(folder)) = (view, plan.images) {
             let path = folder.join(image_name(scene, name));
             frame.image.save(&path).map_err(stage.failed(name))?;
+            picture = Some(picture_hash(&path)?);
         }
         let shown = Displayed::new(&frame.image);
         let (against, displayed) = exact
@@ -221,6 +249,7 @@ fn draw(
             scene: scene.clone(),
             view: view as u32,
             samples: plan.samples,
+            picture,
             ssim: shown.ssim(displayed),
             flip: Some(shown.flip(displayed)),
             transmittance_error: stacks.error(&entry.method, entry.model),

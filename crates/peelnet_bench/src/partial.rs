@@ -1,6 +1,6 @@
 //! What an interrupted comparison has measured so far.
 
-use crate::{EvalError, Row};
+use crate::{EvalError, Row, compare::check_pictures};
 use peelnet_core::files::Kind;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest as _, Sha256};
@@ -65,7 +65,7 @@ impl Partial {
     /// Goes on with what a run of the same plan left in a folder; starts afresh where there is nothing.
     ///
     /// # Errors
-    /// A file that cannot be read, that is of another plan, or whose rows are not those that were measured.
+    /// A file that cannot be read, that is of another plan, or whose rows or pictures are not those that were measured.
     pub fn resume(folder: &Path, plan: serde_json::Value) -> Result<Self, EvalError> {
         let path = folder.join(Self::FILE);
         if !Self::is_in(folder) {
@@ -91,6 +91,7 @@ impl Partial {
             let why = "it was changed after it was written: its sha256 differs";
             return Err(refuse(why.to_owned()));
         }
+        check_pictures(&kept.rows, folder)?;
         let path = Some(path);
         Ok(Self { kept, path })
     }

@@ -65,6 +65,32 @@ pub struct Row {
     /// Hash of what the scene shows, see [`Scene::content`](peelnet_scene::Scene::content); empty in rows of before there was one.
     #[serde(default)]
     pub scene_content: String,
+    /// SHA-256 of the picture in `images/`, which is drawn of view 0.
+    #[serde(default)]
+    pub picture: Option<String>,
+}
+
+/// Largest value of a row: errors are squares of 32-bit numbers.
+const LARGEST: f64 = 1e80;
+
+impl Row {
+    /// Whether a measurement can have these values.
+    ///
+    /// # Errors
+    /// The field that cannot.
+    pub fn check(&self) -> Result<(), String> {
+        let fields =
+            serde_json::to_value(self).expect("names are text, and floats serialise always");
+        for (name, value) in fields.as_object().into_iter().flatten() {
+            let least = if name == "ssim" { -1.0 } else { 0.0 };
+            if let Some(x) = value.as_f64().filter(|x| !(least..=LARGEST).contains(x)) {
+                return Err(format!(
+                    "`{name}` is {x}, and lies from {least} to {LARGEST:e}"
+                ));
+            }
+        }
+        Ok(())
+    }
 }
 
 /// Of rows that were measured before there were more.

@@ -120,7 +120,7 @@ fn remove_partial(path: &Path) -> std::io::Result<()> {
 }
 
 /// The files of the dataset in a folder, in an order in which they can be removed: those that list others last. What living writers have
-/// in `_peelnet/` is left out. The first file in the folder that is not a dataset's is an error.
+/// in `_peelnet/` is left out. The first file in the folder that is not a dataset's is an error, and so is one that is read-only.
 pub(crate) fn older_files(folder: &Path) -> Result<Vec<PathBuf>, DatasetError> {
     let store = Folder {
         path: folder.to_owned(),
@@ -165,6 +165,11 @@ pub(crate) fn older_files(folder: &Path) -> Result<Vec<PathBuf>, DatasetError> {
         files.push(path);
     }
     files.extend(control.iter().rev().map(|name| folder.join(name)));
+    let is_locked = |path: &&PathBuf| fs::metadata(path).is_ok_and(|m| m.permissions().readonly());
+    if let Some(locked) = files.iter().find(is_locked) {
+        let reason = "is read-only, so the dataset is not replaced; choose another folder, or let the file be written";
+        return Err(DatasetError::invalid(locked, reason));
+    }
     Ok(files)
 }
 

@@ -69,5 +69,5 @@ pub use plan::{Header, Shard, worker_name};
 pub use reader::{Batches, Dataset};
 pub use split::{Split, SplitBy, Subset};
 pub use store::{create_object, read_object};
-pub use summary::Summary;
+pub use summary::{Summary, check_rows};
 pub use writer::{DatasetWriter, PartWriter};

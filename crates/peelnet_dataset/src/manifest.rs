@@ -198,12 +198,18 @@ impl Manifest {
             let checked = self.check_part(k, part);
             checked.map_err(|reason| format!("parts[{k}]: {reason}"))?;
         }
-        let rows = self.parts.iter().map(|p| p.rows);
-        let rows = rows.fold(0, u64::saturating_add);
-        if rows != self.rows {
-            let stated = self.rows;
-            return Err(format!("`rows` is {stated} but the parts hold {rows}"));
-        }
+        let counted = |name: &str, stated: u64, of_part: fn(&Part) -> u64| {
+            let held = self.parts.iter().map(of_part);
+            let held = held.fold(0, u64::saturating_add);
+            match held == stated {
+                true => Ok(()),
+                false => Err(format!("`{name}` is {stated} but the parts hold {held}")),
+            }
+        };
+        counted("rows", self.rows, |p| p.rows)?;
+        counted("pixels", self.pixels, |p| p.pixels)?;
+        counted("lost_fragments", self.lost_fragments, |p| p.lost_fragments)?;
+        counted("coplanar_ties", self.coplanar_ties, |p| p.coplanar_ties)?;
         if self.hash != hash_of_parts(&self.parts) {
             return Err("`hash` does not fit the files' hashes".to_owned());
         }

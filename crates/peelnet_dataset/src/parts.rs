@@ -211,6 +211,18 @@ pub(crate) fn check_files(
     }
 }
 
+/// Whether a part of the manifest is as its writer recorded it, where there is a record. Files have hashes of their own.
+pub(crate) fn is_as_recorded(store: &dyn Store, part: &Part) -> Result<bool, DatasetError> {
+    let record = PartRecord::read(store, part.index, None)?;
+    Ok(record.is_none_or(|record| {
+        let files = part.files.clone();
+        Part {
+            files,
+            ..record.part
+        } == *part
+    }))
+}
+
 /// The error of a part's file, with the worker that wrote it.
 pub(crate) fn damaged(store: &dyn Store, index: u32, name: &str, reason: &str) -> DatasetError {
     let record = PartRecord::read(store, index, None).ok().flatten();

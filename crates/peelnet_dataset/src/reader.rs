@@ -6,8 +6,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::column::{Column, FragmentBatch};
 use crate::error::DatasetError;
-use crate::formats::PartSource;
-use crate::manifest::{Manifest, Part};
+use crate::formats::{Format, PartSource};
+use crate::manifest::{EXTRACT_AGAIN, Manifest, Part};
 use crate::parts;
 use crate::plan::Plan;
 use crate::store::{Fetched, Store, open_store};
@@ -183,6 +183,8 @@ struct OpenPart {
     /// The files of the columns, or the one of all; copies live as long as this.
     files: Vec<Fetched>,
     rows: u64,
+    /// Whether the manifest says of it what its writer recorded.
+    is_as_recorded: bool,
 }
 
 impl OpenPart {
@@ -199,6 +201,11 @@ impl OpenPart {
             .zip(&files)
             .filter(|(f, _)| !is_verified(**f));
         let verified = unverified.try_for_each(|(&f, file)| dataset.verify_file(k, f, file));
+        let verified = match verified {
+            // The reader of its pages panics on some that were changed, and takes memory by what they say.
+            Err(error) if format == Format::Parquet => return Err(error),
+            verified => verified,
+        };
         let mut open = Self {
             index: part.index,
             expected: part.rows,
@@ -206,6 +213,7 @@ impl OpenPart {
             source: format.source(&files, columns, part.rows)?,
             files,
             rows: 0,
+            is_as_recorded: parts::is_as_recorded(&*dataset.store, part)?,
         };
         if verified.is_err() {
             // The place of what is wrong says more than a hash.
@@ -235,6 +243,13 @@ impl OpenPart {
             let (rows, expected) = (self.rows, self.expected);
             let reason = format!("{rows} rows where the manifest says {expected}");
             return Err(DatasetError::changed(self.shown(0), reason));
+        }
+        if count == 0 && !self.is_as_recorded {
+            let reason = format!(
+                "the manifest and _peelnet/parts say different things of part {}, one of them was edited; {EXTRACT_AGAIN}",
+                self.index
+            );
+            return Err(DatasetError::invalid(self.shown(0), reason));
         }
         Ok(count)
     }

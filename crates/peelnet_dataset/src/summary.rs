@@ -1,12 +1,14 @@
 //! What `peelnet inspect` says about a dataset: counts, ranges, histograms, and whether the rows agree with one
 //! another.
 
+use std::ops::Range;
+
 use peelnet_core::tolerance::{self, UNIT_ROUNDOFF};
 use serde::{Deserialize, Serialize};
 
 use crate::column::{Column, ColumnSlice, FragmentBatch};
 use crate::error::DatasetError;
-use crate::manifest::Manifest;
+use crate::manifest::{Manifest, Part};
 use crate::reader::Dataset;
 
 /// Violations that are listed; the rest is counted only.
@@ -203,7 +205,7 @@ impl Summary {
     fn add_pixel(
         &mut self,
         batch: &FragmentBatch,
-        pixel: std::ops::Range<usize>,
+        pixel: Range<usize>,
         file: &str,
         first_row: u64,
         lossy: bool,
@@ -223,36 +225,9 @@ impl Summary {
         }
         bins[bin].count += 1;
 
-        let alphas = batch.one_minus_alpha[pixel.clone()].iter();
-        let alpha_sum: f64 = alphas.map(|&v| 1.0 - f64::from(v)).sum();
-        // Σα summed in 32 bits in any order, against a 64-bit sum over the stored 1 − α: n − 1 additions err by at most one unit roundoff
-        // of the sum each, and n times α is recovered from a rounded 1 − α, at most one unit roundoff of 1.
-        let sum_tolerance = n as f64 * UNIT_ROUNDOFF * (alpha_sum + 1.0);
-        // ∏(1 − α_j) over the rows before this one.
-        let mut transmittance = 1.0;
-        let mut before = 0.0f32;
-        for (layer, i) in pixel.enumerate() {
-            let place = (file, first_row + i as u64);
-            let depth = batch.linear_depth[i];
-            let checked = [
-                (
-                    batch.transmittance[i].into(),
-                    transmittance,
-                    tolerance::transmittance(n),
-                ),
-                (batch.alpha_sum[i].into(), alpha_sum, sum_tolerance),
-                (batch.fragment_count[i].into(), n as f64, 0.0),
-                (batch.layer[i].into(), layer as f64, 0.0),
-                (depth.into(), depth.max(before).into(), 0.0),
-            ];
-            // All but the order of depths are of all fragments of the pixel.
-            let first = if lossy { 4 } else { 0 };
-            for (k, values) in checked.into_iter().enumerate().skip(first) {
-                self.check(k, place, values);
-            }
-            transmittance *= f64::from(batch.one_minus_alpha[i]);
-            before = depth;
-        }
+        implied(batch, pixel, lossy, |i, k, values| {
+            self.check(k, (file, first_row + i as u64), values);
+        });
     }
 
     /// Compares a row's value with what the others say, and the deviation with its tolerance, for the check of this number.
@@ -284,4 +259,69 @@ impl Summary {
             }
         }
     }
+}
+
+/// Calls `each` with what the rows of a pixel say and what the others imply: the row, the number of the check, and the value found, the one
+/// expected and the tolerance.
+fn implied(
+    batch: &FragmentBatch,
+    pixel: Range<usize>,
+    lossy: bool,
+    mut each: impl FnMut(usize, usize, (f64, f64, f64)),
+) {
+    let n = pixel.len();
+    let alphas = batch.one_minus_alpha[pixel.clone()].iter();
+    let alpha_sum: f64 = alphas.map(|&v| 1.0 - f64::from(v)).sum();
+    // Σα summed in 32 bits in any order, against a 64-bit sum over the stored 1 − α: n − 1 additions err by at most one unit roundoff
+    // of the sum each, and n times α is recovered from a rounded 1 − α, at most one unit roundoff of 1.
+    let sum_tolerance = n as f64 * UNIT_ROUNDOFF * (alpha_sum + 1.0);
+    // ∏(1 − α_j) over the rows before this one.
+    let mut transmittance = 1.0;
+    let mut before = 0.0f32;
+    for (layer, i) in pixel.enumerate() {
+        let depth = batch.linear_depth[i];
+        let checked = [
+            (
+                batch.transmittance[i].into(),
+                transmittance,
+                tolerance::transmittance(n),
+            ),
+            (batch.alpha_sum[i].into(), alpha_sum, sum_tolerance),
+            (batch.fragment_count[i].into(), n as f64, 0.0),
+            (batch.layer[i].into(), layer as f64, 0.0),
+            (depth.into(), depth.max(before).into(), 0.0),
+        ];
+        // All but the order of depths are of all fragments of the pixel.
+        let first = if lossy { 4 } else { 0 };
+        for (k, values) in checked.into_iter().enumerate().skip(first) {
+            each(i, k, values);
+        }
+        transmittance *= f64::from(batch.one_minus_alpha[i]);
+        before = depth;
+    }
+}
+
+/// Whether rows of whole pixels of a part agree with one another, as [`Summary::checks`] counts it.
+///
+/// # Errors
+/// The first value that does not.
+pub fn check_rows(batch: &FragmentBatch, part: &Part) -> Result<(), String> {
+    let mut wrong = None;
+    for pixel in batch.pixels() {
+        let lossy = part.lost_fragments > 0;
+        implied(batch, pixel, lossy, |i, k, (found, expected, tolerance)| {
+            if (found - expected).abs() > tolerance {
+                let (x, y, name) = (batch.x[i], batch.y[i], CHECKS[k].0);
+                let say = || {
+                    format!(
+                        "pixel ({x}, {y}), layer {}: {name} is {found}, and the other rows say {expected}; `peelnet inspect` lists such rows, \
+                         write the dataset again",
+                        batch.layer[i]
+                    )
+                };
+                wrong.get_or_insert_with(say);
+            }
+        });
+    }
+    wrong.map_or(Ok(()), Err)
 }

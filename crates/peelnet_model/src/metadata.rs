@@ -13,6 +13,9 @@ use crate::recipe::Recipe;
 /// The version of the file's layout that this crate writes and reads.
 pub const FORMAT_VERSION: u32 = 1;
 
+/// Largest weight, offset and scale: products of three of them and their sums are finite in 32 bits, in which shaders are compiled.
+pub(crate) const LARGEST: f32 = 1e12;
+
 /// An input of the network: `normalised = (raw − offset) · scale`, both cut off far outside of real data
 /// ([`RAW_LIMIT`], [`INPUT_LIMIT`]).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -130,6 +133,10 @@ impl Metadata {
                 finite(field(name), value.into())?;
             }
             let (scale, min) = (input.scale, input.min);
+            for (name, value) in [("offset", input.offset), ("scale", scale)] {
+                let is_small = value.abs() <= LARGEST;
+                require(is_small, &field(name), &value, "from -1e12 to 1e12")?;
+            }
             require(scale != 0.0, &field("scale"), &scale, "other than 0")?;
             require(min <= input.max, &field("min"), &min, "at most max")?;
         }

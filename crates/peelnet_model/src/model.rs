@@ -10,7 +10,7 @@ use sha2::{Digest, Sha256};
 use crate::error::{ModelError, Problem};
 use crate::file::{self, MAX_BYTES};
 use crate::inputs::{Feature, Observed, values};
-use crate::metadata::Metadata;
+use crate::metadata::{LARGEST, Metadata};
 use crate::recipe::Recipe;
 
 /// A trained network that knows its features.
@@ -30,14 +30,15 @@ impl Model {
     pub fn load(path: impl AsRef<Path>) -> Result<Self, ModelError> {
         let path = path.as_ref();
         let bytes = peelnet_core::files::read(path, MAX_BYTES);
-        let bytes = match bytes {
-            Err(e) if e.kind() == ErrorKind::IsADirectory => {
-                let why =
-                    "is a folder, and a network is a file; name one that `peelnet train` wrote";
-                return Err(ModelError::invalid(path)(Problem(why.to_owned())));
-            }
-            bytes => bytes.map_err(ModelError::io(path, "read the model"))?,
-        };
+        let bytes = bytes.map_err(|e| {
+            let what = match e.kind() {
+                ErrorKind::IsADirectory => "is a folder, and a network is a file",
+                ErrorKind::NotFound => "there is no such file",
+                _ => return ModelError::io(path, "read the model")(e),
+            };
+            let fix = "name a file that `peelnet train` wrote";
+            ModelError::invalid(path)(Problem(format!("{what}; {fix}")))
+        })?;
         Self::from_bytes(&bytes, path)
     }
 
@@ -95,7 +96,7 @@ impl Model {
     }
 
     /// Whether the model can be used: its layers fit one another, the metadata and the recipe, and all numbers are
-    /// finite.
+    /// finite and of a size that shaders can hold.
     ///
     /// # Errors
     /// The first [`Problem`] found.
@@ -107,10 +108,11 @@ impl Model {
         for (i, layer) in self.mlp.layers.iter().enumerate() {
             let Layer { weights, bias, .. } = layer;
             for (part, values) in [("weight", weights), ("bias", bias)] {
-                if let Some(index) = values.iter().position(|v| !v.is_finite()) {
+                let is_small = |v: &f32| v.abs() <= LARGEST;
+                if let Some(index) = values.iter().position(|v| !is_small(v)) {
                     let (name, value) = (format!("layers.{i}.{part}"), values[index]);
                     return Err(Problem(format!(
-                        "tensor {name:?}: value {index} is {value}, all weights must be finite; the training diverged, train again with a lower rate"
+                        "tensor {name:?}: value {index} is {value}, all weights must be from -1e12 to 1e12; the training diverged, train again with a lower rate"
                     )));
                 }
             }

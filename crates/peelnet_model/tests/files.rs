@@ -137,11 +137,16 @@ fn bad_tensors() {
     assert_message(&spoilt(Tensors::clear, |_| ()), "weight\" is missing");
     let integers = |t: &mut Tensors| t.get_mut("layers.2.bias").unwrap().0 = Dtype::I32;
     assert_message(&spoilt(integers, |_| ()), "is I32 [1], expected F32");
-    let not_finite = |t: &mut Tensors| {
-        let weights = &mut t.get_mut("layers.1.weight").unwrap().2;
-        weights[12..16].copy_from_slice(&f32::NAN.to_le_bytes());
-    };
-    assert_message(&spoilt(not_finite, |_| ()), "weight\": value 3 is NaN");
+    for (value, words) in [
+        (f32::NAN, "weight\": value 3 is NaN"),
+        (-3e38, "weight\": value 3 is -3"),
+    ] {
+        let set = |t: &mut Tensors| {
+            let weights = &mut t.get_mut("layers.1.weight").unwrap().2;
+            weights[12..16].copy_from_slice(&value.to_le_bytes());
+        };
+        assert_message(&spoilt(set, |_| ()), words);
+    }
 }
 
 #[test]
@@ -163,6 +168,7 @@ fn bad_metadata() {
         ("/inputs/1/name", json!("sum"), "lists (linear_depth, sum, "),
         ("/output", json!("color"), "thesis does not predict color"),
         ("/inputs/2/scale", json!(null), "null, expected f32"),
+        ("/inputs/2/scale", json!(3e38), "from -1e12 to 1e12"),
         (
             "/inputs/2/scale",
             json!(0),
@@ -186,7 +192,10 @@ fn files_that_are_no_models() {
     let foreign = safetensors::serialize(foreign, None).unwrap();
     assert_message(&foreign, "not a peelnet model");
     let text = Model::load("nowhere/m").unwrap_err().to_string();
-    assert!(text.starts_with("nowhere/m: cannot read"), "{text}");
+    assert!(
+        text.starts_with("nowhere/m: there is no such file"),
+        "{text}"
+    );
 }
 
 #[test]

@@ -167,7 +167,11 @@ fn parse(path: &Path, files: &mut Files<'_>) -> Result<RawScene, SceneError> {
         let line = e.span().map_or(1, |s| {
             1 + text[..s.start.min(text.len())].matches('\n').count()
         });
-        SceneError::file(path, Some(line), e.message().trim().replace('\n', "; "))
+        let mut message = e.message().trim().replace('\n', "; ");
+        if message.starts_with("invalid mantissa") {
+            message += ": write 0.8, not .8";
+        }
+        SceneError::file(path, Some(line), message)
     })
 }
 

@@ -84,6 +84,24 @@ impl Mesh {
         }));
     }
 
+    /// Drops the vertices that no triangle uses.
+    pub(crate) fn keep_used(&mut self) {
+        let mut numbers = vec![None; self.positions.len()];
+        let mut used = Vec::new();
+        for i in self.triangles.as_flattened_mut() {
+            let old = *i;
+            *i = *numbers[old as usize].get_or_insert_with(|| {
+                used.push(old as usize);
+                used.len() as u32 - 1
+            });
+        }
+        self.positions = used.iter().map(|&i| self.positions[i]).collect();
+        self.normals = used.iter().map(|&i| self.normals[i]).collect();
+        if !self.colors.is_empty() {
+            self.colors = used.iter().map(|&i| self.colors[i]).collect();
+        }
+    }
+
     /// Tangents of a run of triangles, for normal maps: direction of u, and 1 or −1 where v runs against or along normal × tangent,
     /// by MikkTSpace (Mikkelsen 2008), which bakers of normal maps use. `None` without UVs.
     pub fn tangents(&self, triangles: Range<usize>) -> Option<Vec<[[f32; 4]; 3]>> {

@@ -11,6 +11,9 @@ use std::{borrow::Cow, io::Cursor, sync::Arc};
 /// Longest side of a texture that is read: WebGPU guarantees no longer one.
 const LONGEST: u32 = 8192;
 
+/// Most bytes that a decoder takes before it decodes texels.
+const MAX_BEFORE: u64 = 16 << 20;
+
 /// A texture of 8 bits a channel.
 #[derive(Clone, PartialEq, Eq)]
 pub struct Texture {
@@ -129,23 +132,14 @@ impl Texture {
 
     /// Reads a PNG or JPEG image for a scene that has taken other textures, with at most one more copy of its texels in memory.
     pub(crate) fn decode(name: &str, bytes: &[u8], budget: &mut Budget) -> Result<Self, String> {
-        let format = image::guess_format(bytes).ok();
-        let Some(format) = format.filter(|f| [ImageFormat::Png, ImageFormat::Jpeg].contains(f))
-        else {
-            return Err("is neither a PNG nor a JPEG image; save it as one of them".into());
-        };
-        let mut limits = Limits::default();
-        (limits.max_image_width, limits.max_image_height) = (Some(LONGEST), Some(LONGEST));
-        let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
-        reader.limits(limits);
-        let decoder = reader.into_decoder().map_err(|e| plain(&e))?;
+        let decoder = decoder(bytes)?;
         let (width, height) = decoder.dimensions();
         if width.max(height) > LONGEST {
             return Err(too_large());
         }
         budget.take_texels([width, height])?;
         let image = DynamicImage::from_decoder(decoder).map_err(|e| plain(&e))?;
-        let texels = image.into_rgba8().pixels().map(|p| p.0).collect();
+        let texels = bytemuck::cast_vec(image.into_rgba8().into_raw());
         Ok(Self::new(name, [width, height], texels))
     }
 
@@ -195,6 +189,21 @@ impl Texture {
         let height = |x, y| f32::from(at(x, y)) / 255.0;
         normals_of(&self.name, self.size, slope, height)
     }
+}
+
+/// A decoder that has read what comes before the texels.
+fn decoder(bytes: &[u8]) -> Result<impl ImageDecoder + '_, String> {
+    let format = image::guess_format(bytes).ok();
+    let Some(format) = format.filter(|f| [ImageFormat::Png, ImageFormat::Jpeg].contains(f)) else {
+        return Err("is neither a PNG nor a JPEG image; save it as one of them".into());
+    };
+    let mut limits = Limits::default();
+    (limits.max_image_width, limits.max_image_height) = (Some(LONGEST), Some(LONGEST));
+    // Of what is read before the texels, such as a colour profile.
+    limits.max_alloc = Some(MAX_BEFORE);
+    let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
+    reader.limits(limits);
+    reader.into_decoder().map_err(|e| plain(&e))
 }
 
 fn too_large() -> String {
@@ -250,6 +259,7 @@ pub(crate) fn normals_of(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use image::ImageEncoder as _;
 
     /// A plane that rises to the right by one texel a texel leans to the left by 45 degrees; flat ground is (128, 128, 255).
     #[test]
@@ -260,6 +270,25 @@ mod tests {
         assert_eq!(ramp.texels[8 + 3], [left, 128, up, 255]);
         let flat = normals_of("flat", [4, 4], 5.0, |_, _| 0.3);
         assert!(flat.texels.iter().all(|t| *t == [128, 128, 255, 255]));
+    }
+
+    /// A colour profile of 32 MiB, packed to a few kilobytes, is left out: it would be made and not used.
+    #[test]
+    fn what_precedes_the_texels_is_bounded() {
+        let encoded = |profile: usize| {
+            let mut bytes = Vec::new();
+            let mut encoder = image::codecs::png::PngEncoder::new(&mut bytes);
+            encoder.set_icc_profile(vec![0; profile]).expect("is taken");
+            let written = encoder.write_image(&[7; 3], 1, 1, image::ExtendedColorType::Rgb8);
+            written.map(|()| bytes).expect("encodes")
+        };
+        for (length, is_read) in [(1 << 10, true), (1 << 25, false)] {
+            let bytes = encoded(length);
+            let profile = decoder(&bytes).expect("opens").icc_profile();
+            assert_eq!(profile.expect("is whole").is_some(), is_read);
+            let texture = Texture::decode("x", &bytes, &mut Budget::default());
+            assert_eq!(texture.expect("is read").texels, [[7, 7, 7, 255]]);
+        }
     }
 
     /// Decoders' errors show their inner state; ours are sentences. Sides beyond the limit, a damaged chunk, another format, and a file cut off.

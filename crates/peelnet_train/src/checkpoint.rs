@@ -236,16 +236,13 @@ fn difference(saved: &Config, asked: &Config) -> Option<String> {
     if asked.schedule == Schedule::Constant {
         saved.epochs = asked.epochs;
     }
-    if saved == *asked {
-        return None;
-    }
     let (a, b) = (
         serde_json::to_value(&saved).ok()?,
         serde_json::to_value(asked).ok()?,
     );
-    let mut settings = a.as_object()?.iter();
-    let differs = settings.find(|(key, value)| b.get(key.as_str()) != Some(value));
-    Some(differs.map_or("config", |(key, _)| key).to_owned())
+    // Defaults are left out.
+    let mut settings = a.as_object()?.keys().chain(b.as_object()?.keys());
+    settings.find(|key| a.get(key) != b.get(key)).cloned()
 }
 
 pub(crate) fn upload(values: Vec<f32>, device: &Device) -> Tensor<1> {
@@ -258,4 +255,23 @@ pub(crate) fn download(tensor: &Tensor<1>) -> Vec<f32> {
         .to_data()
         .try_into_vec()
         .expect("parameters and losses are 32-bit floats")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Also of those that are stored only where they are given.
+    #[test]
+    fn the_setting_that_differs_is_named() {
+        let plain = Config::for_recipe(peelnet_model::Recipe::SMALL);
+        let streamed = Config {
+            buffer_rows: Some(9),
+            ..plain.clone()
+        };
+        for (saved, asked) in [(&plain, &streamed), (&streamed, &plain)] {
+            assert_eq!(difference(saved, asked).as_deref(), Some("buffer_rows"));
+        }
+        assert_eq!(difference(&plain, &plain), None);
+    }
 }

@@ -1,9 +1,12 @@
 //! From views of a dataset to the examples of a recipe.
 
 use peelnet_core::absorbance::DepthWarp;
+use peelnet_core::files::shown;
 use peelnet_core::methods::known::KnownFragment;
 use peelnet_core::statistics::SumPrecision;
-use peelnet_dataset::{Column, Dataset, DatasetError, FragmentBatch, Part, Split, Subset};
+use peelnet_dataset::{
+    Column, Dataset, DatasetError, FragmentBatch, Part, Split, Subset, check_rows,
+};
 use peelnet_model::Recipe;
 use peelnet_model::inputs::{Examples, Observed, PeeledPixel};
 
@@ -131,6 +134,10 @@ pub(crate) fn gather<'a>(
         let (mut sum, mut pixels) = (0.0, 0);
         for batch in view.batches() {
             let batch = batch?;
+            check_rows(&batch, view.part).map_err(|problem| {
+                let file = view.dataset.path().join(&view.part.files[0].name);
+                TrainError::rows(&shown(&file), &problem)
+            })?;
             each_pixel(&batch, warp, recipe.sums, |[index, x, y], pixel| {
                 if !sample.keep([x, y], pixel.observed.fragments.len()) {
                     return;

@@ -1,33 +1,39 @@
-//! One training at a time writes to a model file and its checkpoint folder.
+//! One command at a time writes to a model file and its checkpoint folder, or to a folder of results.
 
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io;
 use std::path::{Path, PathBuf};
 
-use peelnet_core::files::Unfinished;
+use peelnet_core::files::{Unfinished, folder_of, shown};
 
 use crate::error::{TrainError, beside, io as io_error};
 
-/// Held by a training as long as it may write to its model file: a second one with the same file is refused.
+/// Held by a command as long as it may write to its model file or results: a second one with the same place is refused.
 ///
 /// It is a lock of the operating system on `<out>.lock`, so it ends with the process, however that ends. The file is removed when this
 /// is dropped; one that was left behind is not locked and not in the way.
 #[derive(Debug)]
 pub struct OutputLock {
     path: PathBuf,
+    /// Folders that were created for it, innermost first.
+    created: Vec<PathBuf>,
     _file: File,
     _unfinished: Unfinished,
 }
 
 impl OutputLock {
-    /// Takes the lock of a model file.
+    /// Takes the lock of a model file, or of what stands for a folder of results.
     ///
     /// # Errors
-    /// Another training holds it, or the folder cannot be written.
+    /// Another command holds it, or the folder cannot be written.
     pub fn take(out: &Path) -> Result<Self, TrainError> {
         let path = beside(out, "lock");
         let failed = io_error(&path);
-        std::fs::create_dir_all(peelnet_core::files::folder_of(&path)).map_err(&failed)?;
+        let folder = folder_of(&path);
+        let is_new = |a: &&Path| !a.as_os_str().is_empty() && !a.exists();
+        let created = folder.ancestors().take_while(is_new).map(Path::to_owned);
+        let created = created.collect();
+        std::fs::create_dir_all(folder).map_err(&failed)?;
         // No link, whose target would be created, and no device.
         peelnet_core::files::check_file(&path).map_err(&failed)?;
         loop {
@@ -41,15 +47,15 @@ impl OutputLock {
             if file.metadata().map_err(&failed)?.len() > 0 {
                 return Err(failed(io::Error::new(
                     io::ErrorKind::AlreadyExists,
-                    "a file that is not peelnet's has the name of the lock; choose another name for the model",
+                    "a file that is not peelnet's has the name of the lock; choose another name",
                 )));
             }
             match file.try_lock() {
                 Ok(()) => {}
                 Err(TryLockError::WouldBlock) => {
                     return Err(TrainError::Failed(format!(
-                        "{}: another training writes to this file and its checkpoint; wait for it to end, or write to another file",
-                        out.display()
+                        "{}: another command writes there; wait for it to end, or write to another place",
+                        shown(out)
                     )));
                 }
                 Err(TryLockError::Error(error)) => return Err(failed(error)),
@@ -59,6 +65,7 @@ impl OutputLock {
                 return Ok(Self {
                     _unfinished: Unfinished::new(&path),
                     path,
+                    created,
                     _file: file,
                 });
             }
@@ -70,6 +77,10 @@ impl Drop for OutputLock {
     fn drop(&mut self) {
         // While it is still locked. A file that stays is not in the way.
         let _ = std::fs::remove_file(&self.path);
+        for folder in &self.created {
+            // Those that hold something now stay.
+            let _ = std::fs::remove_dir(folder);
+        }
     }
 }
 

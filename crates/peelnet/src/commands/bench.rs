@@ -11,7 +11,7 @@ use peelnet_bench::report::{Measurement, Results};
 use peelnet_bench::{
     EvalError, Machine, Partial,
     bench::{Bench, Progress, bench_watched},
-    compare::Plan,
+    compare::{Plan, check_pictures},
     effects::{self, Effects},
     json_hash,
     path::{self, Along},
@@ -41,7 +41,7 @@ fn compare(context: &Context<'_>, args: &CompareArgs) -> Result<(), Failure> {
     let mut outputs = context.results::<Bench>(pictures.scenes.iter().chain(models), out)?;
     outputs.folder("--out", out, [(Partial::FILE, Partial::KIND)])?;
     let scenes = context.scenes(&pictures.scenes)?;
-    let _begun = context.begin(outputs, &scenes)?;
+    let _begun = context.begin_in(out, outputs, &scenes)?;
     let plan = Plan {
         samples: pictures.samples,
         views: args.views.map(|n| n as usize),
@@ -60,8 +60,9 @@ fn compare(context: &Context<'_>, args: &CompareArgs) -> Result<(), Failure> {
 fn redraw(context: &Context<'_>, out: &Path) -> Result<(), Failure> {
     let mut outputs = context.results::<Bench>(&[], out)?;
     outputs.folder("--out", out, [(Partial::FILE, Partial::KIND)])?;
-    let _begun = context.begin(outputs, &[])?;
+    let _begun = context.begin_in(out, outputs, &[])?;
     let results = read(out)?;
+    check_pictures(&results.measured.rows, out)?;
     results.write(out)?;
     print(context, &results)
 }
@@ -96,7 +97,7 @@ pub(super) fn show<'a>(context: &'a Context<'_>, name: &'static str) -> impl FnM
 fn scale(context: &Context<'_>, args: &ScalingArgs) -> Result<(), Failure> {
     let (out, models) = (&args.compared.out, &args.compared.models);
     let outputs = context.results::<Scaling>(models, out)?;
-    let _begun = context.begin(outputs, &[])?;
+    let _begun = context.begin_in(out, outputs, &[])?;
     let gpu = context.gpu()?;
     // Parameters change what a method costs, but hardly how that grows.
     let named = args.compared.methods.as_deref();
@@ -112,7 +113,8 @@ fn scale(context: &Context<'_>, args: &ScalingArgs) -> Result<(), Failure> {
 }
 
 fn measure_effects(context: &Context<'_>, args: &EffectsArgs) -> Result<(), Failure> {
-    let outputs = context.results::<Effects>(&args.scenes, &args.out)?;
+    let out = &args.out;
+    let outputs = context.results::<Effects>(&args.scenes, out)?;
     let scenes = if args.scenes.is_empty() {
         let shipped = suite::EFFECTS.iter();
         let shipped = shipped.map(|file| suite::load_file(file, None));
@@ -120,14 +122,14 @@ fn measure_effects(context: &Context<'_>, args: &EffectsArgs) -> Result<(), Fail
     } else {
         context.scenes(&args.scenes)?
     };
-    let _begun = context.begin(outputs, &scenes)?;
+    let _begun = context.begin_in(out, outputs, &scenes)?;
     let settings = effects::Settings {
         method: args.method.clone(),
         size: args.size,
         frames: args.frames.max(1),
     };
     let gpu = context.gpu()?;
-    let (out, show) = (&args.out, &mut show(context, "effects"));
+    let show = &mut show(context, "effects");
     let found = effects::measure(&gpu, &scenes, &settings, out, context.stop, show)?;
     report(context, &gpu, out, found, |results| {
         let tables: Vec<String> = results.tables().iter().map(|(.., t)| t.plain()).collect();
@@ -143,7 +145,7 @@ fn along_path(context: &Context<'_>, args: &PathArgs) -> Result<(), Failure> {
     }
     let outputs = context.results::<Along>(pictures.scenes.iter().chain(models), out)?;
     let scenes = context.scenes(&pictures.scenes)?;
-    let _begun = context.begin(outputs, &scenes)?;
+    let _begun = context.begin_in(out, outputs, &scenes)?;
     let gpu = context.gpu()?;
     // A path costs as much as sixty views.
     let named = pictures.compared.methods.as_deref();
@@ -245,6 +247,7 @@ fn finished(
         }
         .into());
     }
+    check_pictures(&results.measured.rows, folder)?;
     context.console.message(format!(
         "{}: the run has finished with these settings: its results are kept",
         shown(&file)
@@ -285,9 +288,14 @@ pub(super) fn compared(
 
 /// A bench's `results.json`, or the folder that holds it.
 pub(super) fn read(path: &Path) -> Result<Results<Bench>, Failure> {
-    Results::read(path).map_err(|e| {
-        let why = error_line(&e);
+    let failed = |why| {
         let text = format!("{why}; make it with: peelnet bench SCENE --out DIR");
         Failure::failed(text)
-    })
+    };
+    let results: Results<Bench> = Results::read(path).map_err(|e| failed(error_line(&e)))?;
+    for (k, row) in results.measured.rows.iter().enumerate() {
+        let checked = row.check();
+        checked.map_err(|why| failed(format!("{}: rows[{k}]: {why}", shown(path))))?;
+    }
+    Ok(results)
 }

@@ -3,9 +3,9 @@ use crate::cli::{EFFECTS_METHOD, InspectArgs};
 use crate::summary_text::summary_text;
 use peelnet::Failure;
 use peelnet_bench::effects::{self, Cost, Settings};
-use peelnet_core::files::{counted, one_line, printable, shown, thousands};
+use peelnet_core::files::{counted, one_line, printable, read_head, shown, thousands};
 use peelnet_dataset::{Dataset, Summary, is_remote};
-use peelnet_model::Model;
+use peelnet_model::{KIND, Model};
 use peelnet_render::{FrameStats, shader_bytes};
 use peelnet_scene::{EFFECTS, Scene, SceneFeatures, file::ENDINGS, suite};
 use serde_json::json;
@@ -23,7 +23,9 @@ pub(super) fn run(context: &Context<'_>, args: &InspectArgs) -> Result<(), Failu
     let path = &args.what;
     let ending = path.extension().and_then(|e| e.to_str());
     let ending = ending.unwrap_or_default().to_lowercase();
-    let is_model = ending == "safetensors";
+    // A model may have any name.
+    let is_ours = |path: &Path| read_head(path, 1 << 16).is_ok_and(|head| (KIND.is)(&head));
+    let is_model = ending == "safetensors" || (!is_remote(path) && is_ours(path));
     let ships = path.to_str().and_then(suite::find).is_some();
     let is_scene = !is_remote(path) && !path.is_dir() && !is_model;
     if args.time && !is_scene {
@@ -46,10 +48,10 @@ pub(super) fn run(context: &Context<'_>, args: &InspectArgs) -> Result<(), Failu
     } else if !path.exists() && !ships {
         let text = format!("{}: there is no such file or folder", shown(path));
         Err(Failure::failed(text))
+    } else if is_model && path.exists() {
+        model(context, path)
     } else if !path.exists() || ENDINGS.contains(&ending.as_str()) {
         scene(context, path, args.time)
-    } else if is_model {
-        model(context, path)
     } else {
         Err(Failure::wrong(format!(
             "{}: neither a scene (.{}), a dataset (a folder) nor a model (.safetensors)",

@@ -22,6 +22,7 @@ use peelnet_model::Model;
 use peelnet_render::gpu::Gpu;
 use peelnet_render::{FrameStats, ImageFormat, LearnedWeight, MethodOptions, MethodSpec, Renderer};
 use peelnet_scene::{Scene, SceneError, suite};
+use peelnet_train::OutputLock;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -90,6 +91,18 @@ impl Context<'_> {
             outputs,
             console: self.console,
         })
+    }
+
+    /// As [`Context::begin`], for what [`Context::results`] checked: until what is returned is dropped, no other command writes results
+    /// and pictures into the folder.
+    fn begin_in(
+        &self,
+        out: &Path,
+        outputs: Outputs,
+        scenes: &[Scene],
+    ) -> Result<(OutputLock, Begun), Failure> {
+        let begun = self.begin(outputs, scenes)?;
+        Ok((OutputLock::take(&out.join(".peelnet"))?, begun))
     }
 
     fn scenes(&self, paths: &[PathBuf]) -> Result<Vec<Scene>, Failure> {

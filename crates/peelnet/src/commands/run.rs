@@ -63,7 +63,7 @@ pub(super) fn run(context: &Context<'_>, args: &RunArgs) -> Result<(), Failure> 
     } else {
         context.scenes(&args.scenes)?
     };
-    let _begun = context.begin(outputs, &scenes)?;
+    let _begun = context.begin_in(&args.out, outputs, &scenes)?;
     if scenes.iter().all(|s| s.held_out) {
         return Err(Failure::wrong(
             "every scene is marked held-out, so there is none to train on; add one that is not",

@@ -17,7 +17,10 @@ pub(super) fn run(context: &Context<'_>, args: &StressArgs) -> Result<(), Failur
         cases => cases,
     };
     let _begun = match &args.out {
-        Some(out) => Some(context.begin(context.results::<Stressed>(&args.models, out)?, &[])?),
+        Some(out) => {
+            let outputs = context.results::<Stressed>(&args.models, out)?;
+            Some(context.begin_in(out, outputs, &[])?)
+        }
         None => None,
     };
     let gpu = context.gpu()?;

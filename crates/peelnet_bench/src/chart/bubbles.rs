@@ -5,6 +5,7 @@ use crate::{
     front::{BASE, EXACT_MSE, Point},
 };
 use maud::{Markup, html};
+use peelnet_core::files::one_line;
 use plotters::prelude::*;
 
 fn radius(p: &Point) -> f64 {
@@ -84,7 +85,7 @@ fn overlay(mut placed: Vec<(&Point, i32, i32)>) -> Markup {
         @for (p, x, y) in placed {
             @let color = if p.on_front { "#d55e00" } else { "#0072b2" };
             circle class="point" cx=(x) cy=(y) r=(format!("{:.1}", radius(p))) fill=(color) fill-opacity="0.45" stroke=(color) {
-                title { (title(p)) }
+                title { (one_line(&title(p))) }
             }
             "\n"
         }
@@ -132,13 +133,20 @@ mod tests {
         };
         let svg = bubble_chart(&[
             point("plain", 1.0, 1e-2, true),
-            point("a<b", 2.0, 1e-4, true),
+            point("a<b\u{1b}", 2.0, 1e-4, true),
             point("best", 4.0, 1e-10, true),
         ]);
         let text = svg.as_str();
         assert_eq!(text.matches("<circle class=\"point\"").count(), 3);
-        assert!(text.contains("<title>a&lt;b: MSE 1.00e-4, 2.00 x ") && text.contains("exact"));
-        assert!(!text.contains("a<b") && text.trim_end().ends_with("</svg>"));
+        assert!(
+            text.contains("<title>a&lt;b\\u{1b}: MSE 1.00e-4, 2.00 x ") && text.contains("exact")
+        );
+        // Such characters are no XML.
+        assert!(
+            !text.contains("a<b")
+                && !text.contains('\u{1b}')
+                && text.trim_end().ends_with("</svg>")
+        );
         // What no axis can show is left out: labels of such axes would have no end.
         let svg = bubble_chart(&[
             point("huge", 1e-300, 1e308, true),

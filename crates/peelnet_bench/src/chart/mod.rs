@@ -17,6 +17,7 @@ pub use bubbles::bubble_chart;
 pub use lines::{Line, Scale, line_chart};
 
 use maud::{Markup, html};
+use peelnet_core::files::one_line;
 use plotters::prelude::*;
 use std::ops::RangeInclusive;
 
@@ -113,7 +114,7 @@ fn width(name: &str) -> f64 {
 fn name(text: &str, area: Area, color: Option<&str>, bold: bool) -> Markup {
     html! {
         text class="name" x=(format!("{:.0}", area.0[0])) y=(format!("{:.0}", area.0[3] - 2.0)) font-family="sans-serif" font-size="11"
-            fill=[color] font-weight=[bold.then_some("bold")] { (text) }
+            fill=[color] font-weight=[bold.then_some("bold")] { (one_line(text)) }
         "\n"
     }
 }

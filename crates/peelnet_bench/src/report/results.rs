@@ -1,5 +1,8 @@
-use crate::{EvalError, Machine, report::write_file};
-use peelnet_core::files::printable_json;
+use crate::{
+    EvalError, Machine,
+    report::{table::markdown, write_file},
+};
+use peelnet_core::files::{one_line, printable_json};
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use std::path::Path;
 
@@ -42,7 +45,11 @@ impl<T> Results<T> {
         let m = &self.machine;
         format!(
             "Measured on {} ({}, {} cores) with `{}`.",
-            m.adapter, m.cpu, m.cores, self.command
+            markdown(&m.adapter),
+            markdown(&m.cpu),
+            m.cores,
+            // In code only this sign ends it.
+            one_line(&self.command).replace('`', "'")
         )
     }
 }
@@ -84,5 +91,22 @@ impl<T: DeserializeOwned> Results<T> {
         let read = serde_json::from_slice(&bytes);
         let place = format!("{}: not a result of this kind", path.display());
         read.map_err(EvalError::at(place))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Names of machines and command lines come from a file where results are drawn again.
+    #[test]
+    fn a_credit_is_one_line_of_markdown() {
+        let machine = Machine {
+            cpu: "<img src=x>\n# a|b".to_owned(),
+            ..Machine::default()
+        };
+        let credit = Results::new(machine, "peelnet `<b>`\n", ()).credit();
+        assert!(credit.contains(r"&lt;img src=x>\u{a}# a\|b"), "{credit}");
+        assert!(credit.ends_with(r"`peelnet '<b>'\u{a}`."), "{credit}");
     }
 }

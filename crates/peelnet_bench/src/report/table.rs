@@ -55,8 +55,7 @@ impl Table {
     /// As Markdown: the first column to the left, the others to the right.
     pub fn markdown(&self) -> String {
         let line = |cells: &[String]| {
-            let cells = cells.iter().map(|c| one_line(c).replace('|', "\\|"));
-            let cells: Vec<String> = cells.map(|c| c.replace('<', "&lt;")).collect();
+            let cells: Vec<String> = cells.iter().map(|c| markdown(c)).collect();
             format!("| {} |\n", cells.join(" | "))
         };
         let right = "---:|".repeat(self.headings.len().saturating_sub(1));
@@ -103,6 +102,11 @@ impl Table {
             }
         }
     }
+}
+
+/// Text as one line of Markdown, in which it starts no cell and no element.
+pub(crate) fn markdown(text: &str) -> String {
+    one_line(text).replace('|', "\\|").replace('<', "&lt;")
 }
 
 /// A scene's name in a table, marked where a learned method was trained on it.

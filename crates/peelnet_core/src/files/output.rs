@@ -165,6 +165,14 @@ impl Output {
         })
     }
 
+    /// Whether both cannot be files: they have one path, or the path of one leads through the other.
+    fn excludes(&self, other: &Self) -> bool {
+        match (&self.file, &other.file) {
+            (Some(a), Some(b)) => a.starts_with(b) || b.starts_with(a),
+            (a, b) => a == b,
+        }
+    }
+
     fn is_read_only(&self) -> bool {
         self.existing.as_ref().is_some_and(|file| file.is_read_only)
     }
@@ -278,7 +286,6 @@ fn is_stdout_closed() -> bool {
     leads_to_null && flags.is_some_and(|flags| flags.ends_with(READ_AND_WRITE))
 }
 
-/// A reader that closes its pipe has read enough.
 fn to_stdout(bytes: &[u8]) -> io::Result<()> {
     if is_stdout_closed() {
         return Err(io::Error::new(
@@ -287,10 +294,7 @@ fn to_stdout(bytes: &[u8]) -> io::Result<()> {
         ));
     }
     let mut stdout = io::stdout().lock();
-    match stdout.write_all(bytes).and_then(|()| stdout.flush()) {
-        Err(e) if e.kind() == io::ErrorKind::BrokenPipe => Ok(()),
-        other => other,
-    }
+    stdout.write_all(bytes).and_then(|()| stdout.flush())
 }
 
 /// What the [`Outputs`] of this process found where their files go, by path.
@@ -425,8 +429,8 @@ impl Outputs {
         if let Some(file) = &output.file {
             check_folder(folder_of(file))?;
         }
-        if self.taken.iter().any(|taken| taken.file == output.file) {
-            let why = "another output of this command has the same name; choose another";
+        if self.taken.iter().any(|taken| taken.excludes(&output)) {
+            let why = "another output of this command has this name, or that of a folder on the way; choose another";
             return Err(Refused::new(true, why));
         }
         if self.is_input(&output) && !is_forced {

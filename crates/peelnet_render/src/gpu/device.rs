@@ -398,6 +398,8 @@ impl Gpu {
                 extent(*size),
             );
         }
+        // What holds the texels on the way is freed after a submission: not all textures' at once.
+        self.queue.submit([]);
         Ok(texture.create_view(&wgpu::TextureViewDescriptor::default()))
     }
 

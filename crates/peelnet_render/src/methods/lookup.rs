@@ -99,6 +99,15 @@ impl MethodSpec {
         estimate(self, fragments, warp, model)
     }
 
+    /// Whether both are drawn alike, however their values are spelled and whether defaults are given.
+    pub fn is_drawn_as(&self, other: &Self) -> bool {
+        let mut parameters = self.method().all_parameters();
+        (self.name, self.number) == (other.name, other.number)
+            // Their precision.
+            && self.guarantees() == other.guarantees()
+            && parameters.all(|p| p.canonical(self) == p.canonical(other))
+    }
+
     /// The same method with one more parameter, or another value of it.
     ///
     /// # Errors
@@ -199,6 +208,8 @@ mod tests {
         let of = |text: &str| text.parse::<MethodSpec>().unwrap();
         let one = of("wboit-eq10:factor=3e4,targets=f32").without("factor");
         assert_eq!(one, of("wboit-eq10:targets=f32"));
+        assert!(!one.is_drawn_as(&of("wboit-eq10")) && !one.is_drawn_as(&of("wboit-eq9")));
+        assert!(of("wboit-eq10:factor=3e4").is_drawn_as(&of("wboit-eq10:factor=30000.0")));
         assert_eq!(of("kbuffer-4").with_number(8), of("kbuffer-8"));
         assert_eq!(of("kbuffer-4").with_number(0), of("kbuffer-4"));
         let points: usize = METHODS.iter().map(|m| m.curve.len()).sum();
@@ -274,6 +285,7 @@ mod tests {
             }
             for spelled in spelled {
                 assert_eq!(spelled.guarantees(), bare.guarantees(), "{spelled}");
+                assert!(spelled.is_drawn_as(&bare), "{spelled}");
                 for failure in method.expectations.known_failures {
                     let (at, when) = (format!("{spelled}: {}", failure.reason), failure.when);
                     assert_eq!(when(&spelled), when(&bare), "{at}");

@@ -173,6 +173,16 @@ impl Parameter {
         }
     }
 
+    /// The value or the default, numbers in one spelling. `None` where there is neither, and of precisions, whose defaults are the methods'.
+    pub(super) fn canonical(&self, spec: &MethodSpec) -> Option<String> {
+        if matches!(self.values, Values::Precision) {
+            return None;
+        }
+        let text = spec.values.get(self.name).cloned();
+        let text = text.or_else(|| self.default())?;
+        Some(text.parse().map_or(text, |x: f64| x.to_string()))
+    }
+
     /// The value that was given.
     pub fn given<T: FromStr>(&self, spec: &MethodSpec) -> Option<T> {
         spec.values.get(self.name)?.parse().ok()

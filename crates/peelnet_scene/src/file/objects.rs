@@ -49,6 +49,18 @@ pub(super) fn place(
         }
         materials.push(shown);
     }
+    let has = |map: fn(&Maps) -> bool| materials.iter().any(|m| map(&m.maps));
+    for (key, is_used) in [
+        ("normal_scale", has(|maps| maps.normal.is_some())),
+        ("occlusion_strength", has(|maps| maps.occlusion.is_some())),
+        ("wrap", has(Maps::has_any)),
+    ] {
+        if !is_used && raw.material.given().contains(&key) {
+            let what =
+                format!("{field}.material.{key}: changes nothing without a map; leave it out");
+            loader.files.warn(loader.path, &what);
+        }
+    }
     let now = &raw.material;
     displace_in_object_space(&mut materials, now, next, share, &world_from_object);
     let at_map = format!("{field}.material.displacement_map");

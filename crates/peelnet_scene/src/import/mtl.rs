@@ -84,10 +84,14 @@ impl<'a, 'f> Libraries<'a, 'f> {
         let first = self.materials.len();
         numbers.values_mut().for_each(|number| *number += first);
         for m in &materials {
-            let colors = [m.diffuse, m.specular];
-            if colors.iter().flatten().flatten().any(|x| *x > 1.0) {
+            let colors = [m.diffuse, m.specular].into_iter().flatten().flatten();
+            let finish = ["Pr", "Pm"].into_iter().filter_map(|key| number(m, key));
+            let mut shares = colors.chain(finish);
+            let is_dark = m.emissive.is_some_and(|e| e.iter().any(|x| *x < 0.0));
+            if is_dark || shares.any(|x| !(0.0..=1.0).contains(&x)) {
                 let name = format!("'{}'", printable(&m.name));
-                let before = format!("{}: colours above 1 are taken as 1: ", shown(&file));
+                let text = "numbers outside of their range are taken as the nearest in it: ";
+                let before = format!("{}: {text}", shown(&file));
                 self.files.warnings.about(before, &name, "");
             }
             let material = self.put_on(&file, m, material(m, lighting));
@@ -161,19 +165,21 @@ fn check(path: &Path, text: &str, warnings: &mut Warnings) -> Result<String, Sce
     Ok(out)
 }
 
+/// The first number of a statement that `tobj` does not know.
+fn number(m: &tobj::Material, key: &str) -> Option<f32> {
+    let word = m.unknown_param.get(key)?.split_whitespace().next()?;
+    word.parse().ok().filter(|x: &f32| x.is_finite())
+}
+
 /// A material without its textures.
 fn material(m: &tobj::Material, lighting: Lighting) -> Material {
     let default = Material::default_with(lighting);
-    let number = |key: &str| -> Option<f32> {
-        let word = m.unknown_param.get(key)?.split_whitespace().next()?;
-        word.parse().ok().filter(|x: &f32| x.is_finite())
-    };
     // The extension of MTL for physically based shading (Exocortex 2013).
-    let [roughness, metallic] = ["Pr", "Pm"].map(|key| number(key).map(|x| x.clamp(0.0, 1.0)));
+    let [roughness, metallic] = ["Pr", "Pm"].map(|key| number(m, key).map(|x| x.clamp(0.0, 1.0)));
     let is_pbr = lighting != Lighting::Unlit && (roughness.is_some() || metallic.is_some());
     let [color, specular] =
         [m.diffuse, m.specular].map(|c| c.map(|c| c.map(|x| x.clamp(0.0, 1.0))));
-    let transparency = number("Tr");
+    let transparency = number(m, "Tr");
     let alpha = m.dissolve.or(transparency.map(|x| 1.0 - x));
     Material {
         name: m.name.clone(),

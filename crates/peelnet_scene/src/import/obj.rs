@@ -12,6 +12,10 @@ use glam::{DVec3, Vec2, Vec3};
 use peelnet_core::files::printable;
 use std::{borrow::Cow, fmt::Write, path::Path};
 
+/// What is said of bright vertices.
+pub(super) const BRIGHT: &str =
+    "vertex colours above 1 are taken as 1; divide those of bytes by 255";
+
 /// Reads an OBJ file and the MTL files and textures that it names.
 ///
 /// Polygons are triangulated, missing or unusable normals computed, triangles without area left out with a warning. A missing MTL, or a name
@@ -38,8 +42,7 @@ pub(super) fn load(path: &Path, files: &mut Files<'_>) -> Result<Imported, Scene
     let materials = libraries.finish(named);
     let mut colors = models.iter().flat_map(|m| &m.mesh.vertex_color);
     if colors.any(|c| *c > 1.0) {
-        let message = "vertex colours above 1 are taken as 1; divide those of bytes by 255";
-        files.warn(path, message);
+        files.warn(path, BRIGHT);
     }
     let mut triangulator = Triangulator::default();
     let parts = models.into_iter().map(|tobj::Model { name, mesh }| {

@@ -4,6 +4,7 @@
 //! file cannot hold, and numbers of text that its grammar refuses, such as `.5` and `1.`, are written in another way.
 
 use super::{
+    obj::BRIGHT,
     ply_elements::{ALPHA, BLUE, Face, GREEN, INDICES, RED, Skipped, U, Vertex},
     polygons::{Triangulator, strip},
     surface::{Fault, fault_of, in_file},
@@ -72,6 +73,7 @@ pub(super) fn read(path: &Path, bytes: &[u8], files: &mut Files<'_>) -> Result<M
         triangulator: Triangulator::default(),
         vertex_uvs: Vec::new(),
         short_faces: 0,
+        is_bright: false,
     };
     for element in header.elements.values() {
         match element.name.as_str() {
@@ -85,6 +87,9 @@ pub(super) fn read(path: &Path, bytes: &[u8], files: &mut Files<'_>) -> Result<M
         }
     }
     let (surface, short_faces) = (reader.surface, reader.short_faces);
+    if reader.is_bright {
+        files.warn(path, BRIGHT);
+    }
     if short_faces > 0 {
         let count = counted(short_faces, "face");
         files.warn(path, &(count + " of fewer than 3 vertices left out"));
@@ -207,6 +212,8 @@ struct Faces<'a> {
     /// One for each vertex, or none.
     vertex_uvs: Vec<Vec2>,
     short_faces: u64,
+    /// Whether colours were cut off.
+    is_bright: bool,
 }
 
 impl Faces<'_> {
@@ -234,7 +241,12 @@ impl Faces<'_> {
             return Err(in_file(message));
         }
         if channels[0] || has(&ALPHA) {
-            self.surface.colors = vertices.iter().map(|v| v.color).collect();
+            let mut colors: Vec<[f32; 4]> = vertices.iter().map(|v| v.color).collect();
+            for x in colors.as_flattened_mut().iter_mut().filter(|x| **x > 1.0) {
+                self.is_bright = true;
+                *x = 1.0;
+            }
+            self.surface.colors = colors;
         }
         if has(&U) {
             // v runs up in PLY, down here.

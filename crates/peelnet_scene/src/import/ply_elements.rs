@@ -65,19 +65,15 @@ impl PropertyAccess for Vertex {
     }
 }
 
-/// A value of 0 … 1; of whole numbers, the largest of a byte, or of a 16-bit number, is 1.
+/// A value from 0, which should be at most 1; of whole numbers, the largest of a byte, or of a 16-bit number, is 1.
 fn share(value: &Property, x: f32) -> f32 {
     let most = match value {
         Property::Float(_) | Property::Double(_) => 1.0,
         Property::UShort(_) => 65_535.0,
         _ => 255.0,
     };
-    let share = x / most;
-    if share.is_nan() {
-        0.0
-    } else {
-        share.clamp(0.0, 1.0)
-    }
+    // 0 of what is no number, too.
+    (x / most).max(0.0)
 }
 
 /// A channel of a colour as linear light. Whole numbers are sRGB.

@@ -153,8 +153,13 @@ impl Libraries<'_, '_> {
         maps.normal = match (map("norm"), found.get("map_Bump")) {
             (Some(normals), _) => Some(Arc::clone(normals)),
             (None, Some((statement, bump))) if bump.is_grey => {
+                // Many strengths share the texture of the nearest power of two.
+                let strength = Some(statement.strength).filter(|s| s.is_finite());
+                let strength = strength.unwrap_or(1.0);
+                let shared = strength.abs().log2().round().clamp(-3.0, 3.0).exp2();
+                maps.normal_scale = (strength / shared).clamp(-100.0, 100.0);
                 // White rises over black by an eightieth of the texture's width.
-                let slope = statement.strength * bump.size[0] as f32 / 80.0;
+                let slope = shared * bump.size[0] as f32 / 80.0;
                 let what = format!("normals by {slope}");
                 let normals = || bump.normals_of_heights(slope);
                 let made = self.files.made(&what, [Some(bump), None], normals);

@@ -7,6 +7,7 @@ use ::gltf::binary::{Glb, Header};
 use glam::{Vec2, Vec3};
 use peelnet_scene::{Lighting, Scene, Source, Wrap};
 use serde_json::{Value, json};
+use std::sync::Arc;
 
 fn glb(json: &Value, buffer: &[u8]) -> Vec<u8> {
     // Its length is written as it is.
@@ -150,19 +151,21 @@ buffers/2 = {"byteLength": 48, "uri": "colors.bin"}
 buffers/3 = {"byteLength": LENGTH, "uri": "red.bin"}
 bufferViews/2 = {"buffer": 1, "byteLength": 32}
 bufferViews/3 = {"buffer": 2, "byteLength": 48}
+buffers/4 = {"byteLength": LENGTH, "uri": "red.bin"}
 bufferViews/4 = {"buffer": 3, "byteLength": LENGTH}
+bufferViews/5 = {"buffer": 4, "byteLength": LENGTH}
 accessors/2 = {"bufferView": 2, "componentType": 5126, "count": 4, "type": "VEC2"}
 accessors/3 = {"bufferView": 3, "componentType": 5126, "count": 4, "type": "VEC3"}
 meshes/0/primitives/0/attributes = {"POSITION": 0, "TEXCOORD_0": 2, "COLOR_0": 3}
 meshes/0/primitives/1/attributes = {"POSITION": 0, "TEXCOORD_0": 2, "COLOR_0": 3}
 meshes/0/primitives/2/attributes = {"POSITION": 0, "TEXCOORD_0": 2, "COLOR_0": 3}
-images = [{"bufferView": 4, "mimeType": "image/png"}, {"uri": "a%20map.png"}]
+images = [{"bufferView": 4, "mimeType": "image/png"}, {"uri": "a%20map.png"}, {"bufferView": 5, "mimeType": "image/png"}]
 samplers = [{"wrapS": 33071, "wrapT": 33648, "magFilter": 9728}]
-textures = [{"source": 0, "sampler": 0}, {"source": 1, "sampler": 0}]
+textures = [{"source": 0, "sampler": 0}, {"source": 1, "sampler": 0}, {"source": 2}]
 materials/0/pbrMetallicRoughness/baseColorTexture/index = 0
 materials/0/pbrMetallicRoughness/baseColorTexture/extensions/KHR_texture_transform = {"offset": [0.25, 0.5], "scale": [2, 1], "rotation": 0}
 materials/0/normalTexture = {"index": 1, "scale": 0.5, "extensions": {"KHR_texture_transform": {"offset": [0.25, 0.5], "scale": [2, 1], "rotation": 0}}}
-materials/1/pbrMetallicRoughness = {"baseColorTexture": {"index": 0}}
+materials/1/pbrMetallicRoughness = {"baseColorTexture": {"index": 2}}
 materials/2/pbrMetallicRoughness = {"baseColorTexture": {"index": 0}}
 materials/3/extensions = {"KHR_materials_transmission": {"transmissionFactor": 0.75}}
 "#;
@@ -188,7 +191,9 @@ fn images_vertex_colours_and_transmission() {
     assert_eq!((color.size, color.texels[0]), ([2, 1], [255, 0, 0, 128]));
     assert_eq!(glass.maps.wrap, [Wrap::Clamp, Wrap::Mirror]);
     assert!(glass.maps.nearest && glass.maps.normal_scale == 0.5);
-    assert!(glass.maps.normal.is_some() && leaf.maps.color.as_ref().unwrap().has_alpha);
+    assert!(glass.maps.normal.is_some() && color.has_alpha);
+    // One place in one file is decoded once.
+    assert!(Arc::ptr_eq(color, leaf.maps.color.as_ref().unwrap()));
     // Opaque by its alpha mode, whatever its image holds.
     assert!(!sign.maps.color.as_ref().unwrap().has_alpha);
     // Three quarters pass, one quarter is scattered.
@@ -197,6 +202,15 @@ fn images_vertex_colours_and_transmission() {
     assert_eq!(mesh.uvs[0][1], Vec2::new(2.25, 1.5));
     assert_eq!(mesh.uvs[2][1], Vec2::new(1.0, 1.0));
     assert_eq!(mesh.colors[0], [1.0, 0.5, 0.25, 1.0]);
+}
+
+/// Many primitives may name the vertices of a whole file: each holds those that it uses.
+#[test]
+fn primitives_hold_the_vertices_that_they_use() {
+    let scene = load(&changed("accessors/1/count = 3")).unwrap();
+    let mesh = &scene.objects[0].mesh;
+    assert_eq!((mesh.positions.len(), mesh.normals.len()), (24, 24));
+    assert_eq!(area(mesh), 2.0 * (1.0 + 2.0));
 }
 
 /// Specular colours and glossiness: the gold of the extension's description, whose fallback is not used, and a texel of chrome: black, white,

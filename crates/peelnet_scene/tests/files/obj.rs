@@ -2,7 +2,8 @@
 
 use crate::{Loaded, area, assert_all_refused, assert_refused, assert_says, image, load_mesh};
 use glam::{Vec2, Vec3};
-use peelnet_scene::{Lighting, Wrap};
+use peelnet_scene::{Lighting, Maps, Wrap};
+use std::sync::Arc;
 
 fn load(obj: &str, mtl: &str) -> Loaded {
     let files = [("a.obj", obj.as_bytes()), ("a.mtl", mtl.as_bytes())];
@@ -136,6 +137,25 @@ fn images_of_materials() {
     assert_says(&warnings.join("\n"), words);
 }
 
+/// Strengths of one height field are a texture and a scale each.
+#[test]
+fn strengths_share_their_normals() {
+    let heights = image(&[[0, 0, 0, 255], [255, 255, 255, 255]]);
+    let obj =
+        format!("mtllib a.mtl\n{QUAD}vt 0 0\nusemtl m\nf 1/1 2/1 3/1\nusemtl n\nf 1/1 3/1 4/1\n");
+    let mtl = b"newmtl m\nmap_Bump -bm 3 a.png\nnewmtl n\nmap_Bump -bm -5 a.png\n";
+    let files: [(&str, &[u8]); 3] = [
+        ("a.obj", obj.as_bytes()),
+        ("a.mtl", mtl),
+        ("a.png", &heights),
+    ];
+    let (mesh, ..) = load_mesh(&files).unwrap();
+    let [m, n] = [0, 1].map(|k| &mesh.parts[k].material.maps);
+    let normals = |maps: &Maps| maps.normal.clone().expect("a map");
+    assert!(Arc::ptr_eq(&normals(m), &normals(n)));
+    assert_eq!((m.normal_scale, n.normal_scale), (0.75, -1.25));
+}
+
 /// A library that is missing is a warning; one that a file names a thousand times is read once.
 #[test]
 fn libraries_are_read_once() {
@@ -163,7 +183,7 @@ fn bad_normals_are_computed_and_flat_triangles_left_out() {
 /// One number is grey, a halo's factor is an opacity, an exponent of 0 is no highlight, colours end at 1; marks are no statements.
 #[test]
 fn materials_as_old_exporters_write_them() {
-    let mtl = "\u{feff}newmtl m\nKd 0.5\nKs 0.8\nNs 0\nd -halo 0.25\nnewmtl n\nKd 2 1 0\nd -halo 1\nKs 0.8 0.8 0.8\nNs 9\nPr 0.3\nPm 0.8\nKe 2 0 1\n";
+    let mtl = "\u{feff}newmtl m\nKd 0.5\nKs 0.8\nNs 0\nd -halo 0.25\nnewmtl n\nKd 2 1 0\nd -halo 1\nKs 0.8 0.8 0.8\nNs 9\nPr 0.3\nPm 0.8\nKe 2 0 1\nnewmtl o\nPm 7\nnewmtl p\nKe -1\n";
     let obj = format!("\u{feff}mtllib a.mtl\n{QUAD}usemtl m\nf 1 2 3\nusemtl n\nf 1 3 4\n");
     let (mesh, warnings, _) = load(&obj, mtl);
     let [m, n] = [0, 1].map(|i| &mesh.parts[i].material);
@@ -176,7 +196,7 @@ fn materials_as_old_exporters_write_them() {
     assert_eq!(n.lighting, Lighting::Unlit);
     let warnings = warnings.join("\n");
     assert_eq!(warnings.matches("-halo").count(), 1, "{warnings}");
-    assert!(warnings.contains("taken as 1: 'n'"), "{warnings}");
+    assert_says(&warnings, "nearest in it: 'n' & 'o' & 'p'");
     // The same where the text is not UTF-8: the first line is a vertex still.
     let latin = [b"\xef\xbb\xbf", QUAD.as_bytes(), b"# caf\xe9\nf 1 2 3\n"].concat();
     let (mesh, ..) = load_mesh(&[("a.obj", &latin)]).unwrap();

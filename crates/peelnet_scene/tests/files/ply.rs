@@ -89,7 +89,8 @@ fn colours_and_opacity_of_vertices() {
     assert!(!mesh.parts[0].material.is_opaque());
     let (mesh, warnings, _) = with("0");
     assert_eq!(mesh.colors[0][3], 1.0);
-    assert!(mesh.parts[0].material.is_opaque() && warnings[0].contains("opacity of 0"));
+    assert!(mesh.parts[0].material.is_opaque());
+    assert_says(&warnings.join("\n"), "opacity of 0 & colours above 1");
 }
 
 /// Normals of the file, of which one is zero; texture coordinates of vertices and of faces; a concave polygon; other elements between.

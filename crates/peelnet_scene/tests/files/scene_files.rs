@@ -1,7 +1,8 @@
 //! Scene files and mesh files as scenes, sound and bad, from files in memory.
 
 use crate::{
-    CAMERA, assert_all_refused, assert_framed, assert_refused, image, load_at, load_files, ply, stl,
+    CAMERA, assert_all_refused, assert_framed, assert_refused, assert_says, image, load_at,
+    load_files, ply, stl,
 };
 use glam::Vec3;
 use peelnet_scene::{Lighting, Material, Scene, SceneError};
@@ -38,6 +39,7 @@ fn load(text: &str) -> Result<Scene, String> {
 const BAD: &str = "
 [camera => s.toml:6
 colour = 1 => s.toml:6 & colour
+background = [.8, 1, 1] => s.toml:6 & write 0.8, not .8
 fov_y = 180.0 => camera.fov_y & 180
 fov_y = 1e-40 => camera.fov_y & 0.01 … 179
 [orbit] ; views = 0 => orbit.views & 1
@@ -407,6 +409,28 @@ fn materials_of_mesh_files() {
     assert!(materials.iter().all(|m| m.lighting == Lighting::Pbr));
     // Physically based light falls off with the square of the distance, so it begins brighter.
     assert!(scene.lights[0].intensity > 3.0);
+}
+
+/// What belongs to a map, where there is none.
+#[test]
+fn values_without_their_maps_are_reported() {
+    let object = "[[object]]\nmesh = { shape = 'quad' }\nmaterial = { normal_scale = 2, occlusion_strength = 1, wrap = 'clamp' }\n";
+    let text = format!("{CAMERA}{object}");
+    let scene = load_files(&[("s.toml", text.as_bytes())]).unwrap();
+    let warnings = scene.warnings.join("\n");
+    let words =
+        "material.normal_scale: changes nothing & material.occlusion_strength: & material.wrap: ";
+    assert_says(&warnings, words);
+    let text = text.replace(
+        "wrap =",
+        "color_map = { pattern = 'noise', cells = 4, colors = [[1, 1, 1], [0, 0, 0]] }, wrap =",
+    );
+    let scene = load_files(&[("s.toml", text.as_bytes())]).unwrap();
+    assert!(
+        !scene.warnings.join("\n").contains("wrap"),
+        "{:?}",
+        scene.warnings
+    );
 }
 
 /// Tiny, far from the origin, and so large that lengths overflow.

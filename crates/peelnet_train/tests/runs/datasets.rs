@@ -27,6 +27,27 @@ fn write(folder: &Path, layers: u32, scenes: Vec<SceneEntry>) -> Dataset {
     write_views(folder, SIDE, scenes, |index| stacks(index, layers))
 }
 
+/// Of rows that contradict one another, nothing sensible is learnt.
+#[test]
+fn rows_that_disagree_are_not_trained_on() {
+    let folder = tempfile::tempdir().unwrap();
+    let dataset = write_views(folder.path(), SIDE, vec![scene("cups", false)], |index| {
+        let mut rows = stacks(index, 3);
+        rows.alpha_sum[4] += 1.0;
+        rows
+    });
+    let config = Config::for_recipe(Recipe::THESIS);
+    let error = TrainingData::from_datasets(&config, &[dataset]).unwrap_err();
+    let text = error.to_string();
+    for words in [
+        "fragments-00000-cups",
+        "pixel (1, 0), layer 1: alpha_sum is 2.5",
+        "`peelnet inspect`",
+    ] {
+        assert!(text.contains(words), "{text}");
+    }
+}
+
 #[test]
 fn held_out_scenes_are_left_out_and_pixels_are_split_whole() {
     let folder = tempfile::tempdir().unwrap();

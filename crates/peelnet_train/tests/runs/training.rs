@@ -260,7 +260,10 @@ fn two_trainings_of_one_output_exclude_one_another() {
     let mut refused = 0;
     train(&config(), &rows(200), &options, |_| {
         let e = run(&config(), &rows(200), &out).unwrap_err();
-        assert!(e.to_string().contains("another training writes"), "{e}");
+        assert!(
+            e.to_string().contains("another command writes there"),
+            "{e}"
+        );
         refused += 1;
     })
     .unwrap();

@@ -28,7 +28,7 @@ pub(super) fn run(context: &Context<'_>, args: &DesignsArgs) -> Result<(), Failu
         config.check()?;
     }
     let scenes = context.scenes(&args.scenes)?;
-    let _begun = context.begin(outputs, &scenes)?;
+    let _begun = context.begin_in(&args.out, outputs, &scenes)?;
     let datasets = args.datasets.iter().map(Dataset::open);
     let datasets = datasets.collect::<Result<Vec<_>, _>>()?;
     let trained_on = check_scenes(context, &scenes, &datasets)?;

@@ -71,7 +71,10 @@ impl Reader<'_, '_> {
     fn image(&mut self, image: &gltf::Image<'_>, opaque: bool) -> Option<Arc<Texture>> {
         // Of many images with one source, it is decoded once.
         let source = match image.source() {
-            gltf::image::Source::View { view, .. } => format!("view {}", view.index()),
+            gltf::image::Source::View { view, .. } => {
+                let bytes = self.buffers.get(view.buffer().index());
+                format!("{:?} at {}", bytes.map(Arc::as_ptr), view.offset())
+            }
             gltf::image::Source::Uri { uri, .. } => {
                 let folder = self.path.parent().unwrap_or(Path::new("."));
                 let uri = urlencoding::decode(uri).unwrap_or(uri.into());

@@ -85,7 +85,12 @@ impl Reader<'_, '_> {
         // Opaque materials ignore the opacity of vertices.
         let is_opaque = primitive.material().alpha_mode() == AlphaMode::Opaque;
         let n = positions.len();
-        let colors = reader.read_colors(0).map(|colors| {
+        let is_counted = |a: &gltf::Accessor<'_>| a.count() == n;
+        let colors = primitive
+            .get(&Semantic::Colors(0))
+            .filter(is_counted)
+            .and_then(|_| reader.read_colors(0));
+        let colors = colors.map(|colors| {
             let colors = colors.into_rgba_f32().map(|c| {
                 let [r, g, b, a] = c.map(|x| finite(x, 0.0, 1.0));
                 [r, g, b, if is_opaque { 1.0 } else { a }]
@@ -101,13 +106,17 @@ impl Reader<'_, '_> {
         let uvs = corners.map(|t| t.map(|i| uvs[i as usize])).collect();
         let part = Mesh {
             uvs,
-            colors: colors.filter(|c| c.len() == n).unwrap_or_default(),
+            colors: colors.unwrap_or_default(),
             positions,
             normals,
             triangles,
             ..Mesh::default()
         };
-        let part = part.into_part(mesh.name().unwrap_or(&place), material);
+        let mut part = part.into_part(mesh.name().unwrap_or(&place), material);
+        // Of the vertices that many primitives name, each holds its own.
+        if 3 * part.triangles.len() < n {
+            part.keep_used();
+        }
         let warnings = &mut self.files.warnings;
         self.loaded.mesh.append(part, &self.not_drawn, warnings);
         Ok(())
