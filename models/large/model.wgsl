@@ -3,34 +3,34 @@
 // WGSL, plain WebGPU. Compiled by naga, and run on a GPU against the network at every export.
 // Network: 9-12-1 (Relu hidden, Sigmoid last), 133 parameters, 120 multiply-adds. Recipe large, seed 1, 80 epochs.
 // Answers: transmittance of what lies between a slab's known ends, exp(-absorbance * share) with absorbance = root_absorbance^2 and share in share_low .. share_high.
-// Input 0: root_absorbance (root of the absorbance between the slab's ends), 0.0 .. 20.264051 in training.
+// Input 0: root_absorbance (root of the absorbance between the slab's ends), 0.0 .. 19.254885 in training.
 // Input 1: place_fraction (of the way between the slab's ends), 0.0 .. 1.0 in training.
 // Input 2: mean_fraction (of the way between the slab's ends), 0.0 .. 1.0 in training.
 // Input 3: share_low (of the absorbance between the slab's ends), 0.0 .. 1.0 in training.
 // Input 4: share_high (of the absorbance between the slab's ends), 0.0 .. 1.0 in training.
 // Input 5: root_own (root of the fragment's absorbance), 0.031630483 .. 2.4013393 in training.
 // Input 6: half_extent (half of the way between the slab's ends, in slabs), 0.00052083336 .. 1.0 in training.
-// Input 7: of_own (absorbance between the ends, of that and the fragment's), 0.0 .. 0.99999017 in training.
+// Input 7: of_own (absorbance between the ends, of that and the fragment's), 0.0 .. 0.99999064 in training.
 // Input 8: of_nearest (absorbance between the ends, of that and the nearer end's), 0.0 .. 1.0 in training.
-// Trained on 21565796 rows of boxes, cups, foliage, intersecting, opaque-mix, panes, sixteen-025, sixteen-050, sixteen-075, sixteen-085, sixteen-random-alpha, sixteen-random-color, smoke-100, smoke-30, synthetic (dataset f0e6c4a7cca08d560f99a5be9cbd1514bf8be352632a347602bf08363695fd29+eb0fb0725f43962450fda44a06f4c27ba969a523c02d556c7eebdda5833c5318).
-// Loss: training 0.000098, validation 0.000091, test 0.000097.
-// Held-out error, mean |T - T_exact|: boxes-held 0.00158, cups-held 0.00160, foliage-held 0.00055, panes-held 0.00017, sixteen-held 0.00036, smoke-held 0.00308.
+// Trained on 21565798 rows of boxes, cups, foliage, intersecting, opaque-mix, panes, sixteen-025, sixteen-050, sixteen-075, sixteen-085, sixteen-random-alpha, sixteen-random-color, smoke-100, smoke-30, synthetic (dataset f0e6c4a7cca08d560f99a5be9cbd1514bf8be352632a347602bf08363695fd29+e22e844788a454658277e87e23685b5ffa00e3ad2d48cb833cc53130eaf4d8b7).
+// Loss: training 0.000133, validation 0.000122, test 0.000123.
+// Held-out error, mean |T - T_exact|: boxes-held 0.00174, cups-held 0.00171, foliage-held 0.00056, panes-held 0.00012, sixteen-held 0.00027, smoke-held 0.00405.
 //
 // Self-tests, to some roundings of 32 bits; weights and colours also to those of 16-bit targets.
-// peelnet_weight(0.46090248, 0.67085797, 0.16887921, 0.7373583, 0.19208878, 0.1129206, 0.12900263, 0.435835, 0.7663156) = 0.8718817
-// peelnet_weight(0.2836532, 0.13589168, 0.26682287, 0.7078695, 0.5534122, 0.8413221, 0.6951227, 0.37161812, 0.9624051) = 0.9452141
-// peelnet_weight(2.5799065, 0.2162394, 0.7240006, 0.37958002, 0.26558614, 1.9607327, 0.5804378, 0.9097891, 0.04841405) = 0.08160464
+// peelnet_weight(0.43794915, 0.67085797, 0.16887921, 0.7373583, 0.19208878, 0.1129206, 0.12900263, 0.4358352, 0.7663156) = 0.87601495
+// peelnet_weight(0.26952705, 0.13589168, 0.26682287, 0.7078695, 0.5534122, 0.8413221, 0.6951227, 0.3716183, 0.9624051) = 0.9499678
+// peelnet_weight(2.451425, 0.2162394, 0.7240006, 0.37958002, 0.26558614, 1.9607327, 0.5804378, 0.9097895, 0.04841405) = 0.11457037
 // Four fragments of a pixel, near 1.0, far 8.0, background 0.25, 0.5, 0.75:
 //    z 1.0, alpha 0.5, rgb 1.0, 0.0, 0.0: zeta -1.0, weight 1.0
 //    z 2.0, alpha 0.5, rgb 0.0, 1.0, 0.0: zeta -0.33333334, weight 0.5
 //    z 4.0, alpha 0.5, rgb 0.0, 0.0, 1.0: zeta 0.33333334, weight 0.25
 //    z 8.0, alpha 0.9, rgb 1.0, 1.0, 1.0: zeta 1.0, weight 0.125
-//    target bins_front: 0.08627451, 0.0, 0.08627451, 0.0
-//    target bins_back: 0.0, 0.08627451, 0.0, 0.2901961
+//    target bins_front: 0.17254902, 0.0, 0.14509805, 0.02745098
+//    target bins_back: 0.02745098, 0.14509805, 0.0, 0.5764706
 //    target absorbances: 0.6931472, 0.6931472, 0.6931472, 2.302585
-//    target nearest: 64928.0, -0.46533203, 0.005054474, -64768.0
-//    target farthest: -65088.0, 0.46411133, -0.0050735474, 65248.0
-//    target firsts: -0.6931472, 0.29681972, -0.145463, 2.302585
+//    target nearest: 64928.0, 0.26879883, 0.005054474, -64768.0
+//    target farthest: -65088.0, -0.27001953, -0.0050735474, 65248.0
+//    target firsts: -0.6931472, -0.27881977, -0.14537315, 2.302585
 //    colour of the pixel: 0.615625, 0.36875, 0.246875
 //
 // How to draw with it. Targets may have 32 bits a channel wherever 16 are named.
@@ -105,7 +105,7 @@ const PEELNET_FAINT: f32 = 0.003921569;
 // What is seen of a bin that has fragments, at least: where little light passes, order still counts a little.
 const PEELNET_LEAST_SEEN: f32 = 0.00390625;
 // Levels of 8 bits that an absorbance of 1 is.
-const PEELNET_BIN_LEVELS: f32 = 32.0;
+const PEELNET_BIN_LEVELS: f32 = 64.0;
 // Bins of depth in a slab, and levels of opacity in each, that its nearest and its farthest fragment are kept with.
 const PEELNET_BINS: f32 = 1920.0;
 const PEELNET_OPACITIES: f32 = 32.0;
@@ -144,21 +144,30 @@ struct PeelnetBetween {
     nearest: f32,
 }
 
+// A depth on a scale without two gaps in which no transparent surface lies, -1 .. 1 again. gaps: the ends of the nearer and of the farther one, as
+// zeta; four times 1 where there is none. The same in all passes of a frame.
+fn peelnet_cut(zeta: f32, gaps: vec4f) -> f32 {
+    let lengths = gaps.yw - gaps.xz;
+    let passed = clamp(vec2f(zeta) - gaps.xz, vec2f(0.0), lengths);
+    let kept = zeta + 1.0 - passed.x - passed.y;
+    return kept * (2.0 / (2.0 - lengths.x - lengths.y)) - 1.0;
+}
+
 // Absorbances of eight bins of the frame's depth, nearest first, in 8 bits.
 struct PeelnetBins {
     front: vec4f,
     back: vec4f,
 }
 
-// What a fragment adds to 8-bit targets: its absorbance, in its own bin. Whole levels, so that no order of adding changes a sum.
+// What a fragment adds to 8-bit targets: its absorbance, shared between the two bins whose middles it lies between, so that little changes as
+// it moves from one to the other, and in whole levels, so that no order of adding changes a sum.
 fn peelnet_bins(alpha: f32, zeta: f32) -> PeelnetBins {
-    let bin = min(floor(zeta * 4.0 + 4.0), 7.0);
+    let place = vec4f(clamp(zeta * 4.0 + 3.5, 0.0, 7.0));
     // At least one: a bin with any fragment is not empty.
-    let level = clamp(floor(peelnet_absorbance(alpha) * PEELNET_BIN_LEVELS + 0.5), 1.0, 255.0) / 255.0;
-    return PeelnetBins(
-        select(vec4f(0.0), vec4f(level), vec4f(bin) == vec4f(0.0, 1.0, 2.0, 3.0)),
-        select(vec4f(0.0), vec4f(level), vec4f(bin) == vec4f(4.0, 5.0, 6.0, 7.0)),
-    );
+    let level = max(floor(peelnet_absorbance(alpha) * PEELNET_BIN_LEVELS + 0.5), 1.0);
+    let front = max(vec4f(1.0) - abs(place - vec4f(0.0, 1.0, 2.0, 3.0)), vec4f(0.0));
+    let back = max(vec4f(1.0) - abs(place - vec4f(4.0, 5.0, 6.0, 7.0)), vec4f(0.0));
+    return PeelnetBins(floor(level * front + 0.5) / 255.0, floor(level * back + 0.5) / 255.0);
 }
 
 // What is let through up to the far end of each of four bins behind an absorbance.
@@ -170,7 +179,8 @@ fn peelnet_passing(before: f32, bins: vec4f) -> vec4f {
 
 // How much of the pixel's scale each of four bins takes: the root of what is seen of it, and nothing where it is empty.
 fn peelnet_shares(before: vec4f, behind: vec4f, bins: vec4f) -> vec4f {
-    return select(vec4f(0.0), sqrt(max(before - behind, vec4f(PEELNET_LEAST_SEEN))), bins > vec4f(0.0));
+    let has_any = min(bins * 255.0, vec4f(1.0));
+    return sqrt(max(before - behind, vec4f(PEELNET_LEAST_SEEN))) * has_any;
 }
 
 // Where a depth lies in its pixel, 0 .. 1, by the absorbances of its bins. Where all are empty, it is the root of the frame's depth.
@@ -313,9 +323,9 @@ fn peelnet_weigh(
 }
 
 // Where a slab ends and the next begins, in the pixel, and the number of the last slab.
-const PEELNET_FIRST_END: f32 = 0.34;
-const PEELNET_SECOND_END: f32 = 0.63;
-const PEELNET_THIRD_END: f32 = 0.8;
+const PEELNET_FIRST_END: f32 = 0.38;
+const PEELNET_SECOND_END: f32 = 0.685;
+const PEELNET_THIRD_END: f32 = 0.84;
 const PEELNET_LAST_SLAB: f32 = 3.0;
 
 struct PeelnetStatistics {
@@ -376,22 +386,22 @@ fn peelnet_share(root_absorbance: f32, place_fraction: f32, mean_fraction: f32, 
     let input_a = vec4f(root_absorbance, place_fraction, mean_fraction, share_low);
     let input_b = vec4f(share_high, root_own, half_extent, of_own);
     let input_c = vec4f(of_nearest, 0.0, 0.0, 0.0);
-    let layer_a_a = max(vec4f(3.2663903, -3.662527, -1.4858606, 9.079746)
-        + mat4x4f(vec4f(0.012053977, 0.10597747, -0.05008541, -0.14564426), vec4f(-0.45787275, 1.1609957, -2.4251537, -1.3628559), vec4f(0.14452827, -1.074953, 2.921781, -1.7066478), vec4f(-5.0721173, 2.7570124, -6.907086, 2.6927578)) * input_a
-        + mat4x4f(vec4f(-0.67774475, 5.9952526, 0.84017164, -0.84743696), vec4f(-0.28413337, -0.18752208, -0.9054862, -1.8464173), vec4f(0.09005235, -0.942758, 2.040689, -1.9998521), vec4f(-3.6150825, -3.5769734, 1.1527116, -1.8108567)) * input_b
-        + vec4f(0.19192438, 0.5184456, 0.2868818, -1.3273993) * input_c.x, vec4f(0.0));
-    let layer_a_b = max(vec4f(6.7264314, 2.9622838, 2.9098969, 5.9744544)
-        + mat4x4f(vec4f(-0.12217721, 0.22763732, -0.004417817, -0.06267596), vec4f(-2.4146361, -0.18476139, -3.4558244, 2.9450746), vec4f(-5.4860015, 1.4868553, -2.1278694, 0.4854823), vec4f(-6.5399365, 3.9464378, -0.38746363, -0.8196625)) * input_a
-        + mat4x4f(vec4f(-1.5837826, -0.94882554, -1.7528132, 0.15016195), vec4f(0.24539638, -0.02962581, -0.09984434, -2.859153), vec4f(-0.81128675, -2.2096338, 0.19959958, 0.61256623), vec4f(-0.07751021, -2.7617075, -0.27255327, -1.1958808)) * input_b
-        + vec4f(1.990514, -0.6359168, -0.31290185, -4.2020493) * input_c.x, vec4f(0.0));
-    let layer_a_c = max(vec4f(3.5223773, -15.221399, -3.4809296, 10.030306)
-        + mat4x4f(vec4f(-0.03140591, 0.060427975, 0.15278174, -0.007083143), vec4f(-2.6500683, 0.38270378, -3.0651162, -0.8758899), vec4f(2.485045, -1.2583921, -3.006661, 1.8098172), vec4f(-2.8701901, 2.0259004, -3.5799527, 0.23054957)) * input_a
-        + mat4x4f(vec4f(-2.3411286, 2.7736285, 0.17103042, -1.0718764), vec4f(0.5770534, 0.705651, 1.5821631, 0.113242306), vec4f(-1.5114138, 2.9570165, 0.109827146, -2.906127), vec4f(0.2477891, -0.49770266, 0.16072541, -2.6521983)) * input_b
-        + vec4f(-1.2668568, 10.466823, 4.406043, -5.414743) * input_c.x, vec4f(0.0));
-    let layer_b_a = 1.0 / (1.0 + exp(min(-(-0.7520336
-        + dot(vec4f(-1.2788893, 1.4166232, -0.63858134, -0.37417185), layer_a_a)
-        + dot(vec4f(0.54287124, 0.1414334, -2.7857668, 0.6133062), layer_a_b)
-        + dot(vec4f(-0.26648676, 0.7075062, -0.83382905, -0.24292463), layer_a_c)), 80.0)));
+    let layer_a_a = max(vec4f(3.2462375, -3.2699733, 2.0795698, 8.754615)
+        + mat4x4f(vec4f(0.03195625, 0.06991469, -0.11084325, 0.050414875), vec4f(-1.1103786, 0.44438714, -2.7028003, -2.6733677), vec4f(0.6288057, 0.13087533, 2.6067007, -0.48397854), vec4f(-3.6312008, 3.8734055, -6.387105, 4.470367)) * input_a
+        + mat4x4f(vec4f(-0.9691928, 5.442423, -0.4443696, 0.7165438), vec4f(0.43283042, -0.1484769, -0.84573996, -0.7849737), vec4f(0.5805953, -0.1903229, 1.7457689, -0.23753698), vec4f(-2.720782, -4.0996428, 0.90138376, -4.9847393)) * input_b
+        + vec4f(-1.8213676, 0.116678245, -1.9264252, -2.9728286) * input_c.x, vec4f(0.0));
+    let layer_a_b = max(vec4f(10.510607, -3.8923492, 3.072055, 6.000249)
+        + mat4x4f(vec4f(-0.09647166, 0.20310876, -0.028520348, 0.0021476196), vec4f(-2.9062073, 0.22728884, -3.1631322, 3.4483242), vec4f(-4.67893, 4.058475, -2.4258206, -1.5965548), vec4f(-6.36753, 5.93288, 0.41062704, -1.1512088)) * input_a
+        + mat4x4f(vec4f(-1.2040421, 0.76668143, -2.31968, -0.87386155), vec4f(0.5476562, 0.57502145, -0.10347233, -2.3200312), vec4f(-0.97067636, -1.7821109, -0.008641228, 1.2771134), vec4f(-1.3998032, 0.182419, 0.1342523, -1.691575)) * input_b
+        + vec4f(-1.8134261, -0.19351593, -0.058829058, -3.1290808) * input_c.x, vec4f(0.0));
+    let layer_a_c = max(vec4f(0.49121752, -9.50615, -2.9425182, 5.1307487)
+        + mat4x4f(vec4f(-0.06508959, 0.2179142, 0.25738588, 0.16194177), vec4f(0.30774269, 0.5832492, -0.8073733, -1.8338085), vec4f(0.819847, -1.8208967, -4.6793585, 2.1063526), vec4f(-1.0088379, 1.1399693, -4.8758698, -3.7558901)) * input_a
+        + mat4x4f(vec4f(-1.8062855, 6.626333, 0.573116, -0.8338889), vec4f(0.8915273, -0.21221328, 1.2831217, -0.5544597), vec4f(-1.7439699, -1.3883057, -0.48767817, -3.5469673), vec4f(-3.2215645, -1.8292199, 1.8131012, -2.175973)) * input_b
+        + vec4f(4.4010983, 6.5133114, 2.5301306, 0.5209779) * input_c.x, vec4f(0.0));
+    let layer_b_a = 1.0 / (1.0 + exp(min(-(-0.92924744
+        + dot(vec4f(-1.1672554, 1.4368079, -0.66805565, -0.59655744), layer_a_a)
+        + dot(vec4f(0.56415296, 0.4231643, -2.3594532, 0.6463365), layer_a_b)
+        + dot(vec4f(-0.26553136, 0.63752025, -0.7536124, -0.28365612), layer_a_c)), 80.0)));
     return layer_b_a;
 }
 
@@ -399,7 +409,7 @@ fn peelnet_share(root_absorbance: f32, place_fraction: f32, mean_fraction: f32, 
 fn peelnet_weight(root_absorbance: f32, place_fraction: f32, mean_fraction: f32, share_low: f32, share_high: f32, root_own: f32, half_extent: f32, of_own: f32, of_nearest: f32) -> f32 {
     let root = clamp(root_absorbance, 0.0, 256.0);
     let share = peelnet_share(
-        clamp(root_absorbance, -41646.84, 41657.707), clamp(place_fraction, -2860.5364, 2861.6028), clamp(mean_fraction, -1577.1843, 1578.2454), clamp(share_low, -2064.7026, 2065.022), clamp(share_high, -2255.4236, 2257.095), clamp(root_own, -5822.1606, 5823.822), clamp(half_extent, -1997.7107, 1999.3191), clamp(of_own, -1709.69, 1711.5151), clamp(of_nearest, -1708.3573, 1710.1793));
+        clamp(root_absorbance, -40224.133, 40234.547), clamp(place_fraction, -2924.509, 2925.556), clamp(mean_fraction, -1657.5375, 1658.5785), clamp(share_low, -2087.3262, 2087.65), clamp(share_high, -2262.9114, 2264.5842), clamp(root_own, -5813.1367, 5814.793), clamp(half_extent, -2003.8801, 2005.4695), clamp(of_own, -1717.3046, 1719.1232), clamp(of_nearest, -1720.3542, 1722.1699));
     let bounds = clamp(vec2f(share_low, share_high), vec2f(0.0), vec2f(1.0));
     return exp(-root * root * mix(bounds.x, bounds.y, share));
 }

@@ -3,7 +3,7 @@
 // WGSL, plain WebGPU. Compiled by naga, and run on a GPU against the network at every export.
 // Network: 9-13-1 (Relu hidden, Sigmoid last), 144 parameters, 130 multiply-adds. Recipe medium, seed 1, 80 epochs.
 // Answers: transmittance of what lies between a slab's known ends, exp(-absorbance * share) with absorbance = root_absorbance^2 and share in share_low .. share_high.
-// Input 0: root_absorbance (root of the absorbance between the slab's ends), 0.0 .. 20.578093 in training.
+// Input 0: root_absorbance (root of the absorbance between the slab's ends), 0.0 .. 20.46857 in training.
 // Input 1: place_fraction (of the way between the slab's ends), 0.0 .. 1.0 in training.
 // Input 2: mean_fraction (of the way between the slab's ends), 0.0 .. 1.0 in training.
 // Input 3: share_low (of the absorbance between the slab's ends), 0.0 .. 1.0 in training.
@@ -12,24 +12,24 @@
 // Input 6: half_extent (half of the way between the slab's ends, in slabs), 0.00052083336 .. 1.0 in training.
 // Input 7: of_own (absorbance between the ends, of that and the fragment's), 0.0 .. 0.9999915 in training.
 // Input 8: of_nearest (absorbance between the ends, of that and the nearer end's), 0.0 .. 1.0 in training.
-// Trained on 21565796 rows of boxes, cups, foliage, intersecting, opaque-mix, panes, sixteen-025, sixteen-050, sixteen-075, sixteen-085, sixteen-random-alpha, sixteen-random-color, smoke-100, smoke-30, synthetic (dataset f0e6c4a7cca08d560f99a5be9cbd1514bf8be352632a347602bf08363695fd29+eb0fb0725f43962450fda44a06f4c27ba969a523c02d556c7eebdda5833c5318).
-// Loss: training 0.000154, validation 0.000141, test 0.000152.
-// Held-out error, mean |T - T_exact|: boxes-held 0.00284, cups-held 0.00291, foliage-held 0.00092, panes-held 0.00030, sixteen-held 0.00071, smoke-held 0.00562.
+// Trained on 21565798 rows of boxes, cups, foliage, intersecting, opaque-mix, panes, sixteen-025, sixteen-050, sixteen-075, sixteen-085, sixteen-random-alpha, sixteen-random-color, smoke-100, smoke-30, synthetic (dataset f0e6c4a7cca08d560f99a5be9cbd1514bf8be352632a347602bf08363695fd29+e22e844788a454658277e87e23685b5ffa00e3ad2d48cb833cc53130eaf4d8b7).
+// Loss: training 0.000170, validation 0.000148, test 0.000164.
+// Held-out error, mean |T - T_exact|: boxes-held 0.00274, cups-held 0.00255, foliage-held 0.00091, panes-held 0.00030, sixteen-held 0.00062, smoke-held 0.00622.
 //
 // Self-tests, to some roundings of 32 bits; weights and colours also to those of 16-bit targets.
-// peelnet_weight(0.4680453, 0.67085797, 0.16887921, 0.7373583, 0.19208878, 0.1129206, 0.12900263, 0.43583557, 0.7663156) = 0.8542118
-// peelnet_weight(0.2880491, 0.13589168, 0.26682287, 0.7078695, 0.5534122, 0.8413221, 0.6951227, 0.37161863, 0.9624051) = 0.94387513
-// peelnet_weight(2.6198885, 0.2162394, 0.7240006, 0.37958002, 0.26558614, 1.9607327, 0.5804378, 0.9097903, 0.04841405) = 0.079958044
+// peelnet_weight(0.46555424, 0.67085797, 0.16887921, 0.7373583, 0.19208878, 0.1129206, 0.12900263, 0.43583557, 0.7663156) = 0.886321
+// peelnet_weight(0.28651604, 0.13589168, 0.26682287, 0.7078695, 0.5534122, 0.8413221, 0.6951227, 0.37161863, 0.9624051) = 0.9458716
+// peelnet_weight(2.6059449, 0.2162394, 0.7240006, 0.37958002, 0.26558614, 1.9607327, 0.5804378, 0.9097903, 0.04841405) = 0.07741144
 // Four fragments of a pixel, near 1.0, far 8.0, background 0.25, 0.5, 0.75:
 //    z 1.0, alpha 0.5, rgb 1.0, 0.0, 0.0: zeta -1.0, weight 1.0
 //    z 2.0, alpha 0.5, rgb 0.0, 1.0, 0.0: zeta -0.33333334, weight 0.5
 //    z 4.0, alpha 0.5, rgb 0.0, 0.0, 1.0: zeta 0.33333334, weight 0.25
 //    z 8.0, alpha 0.9, rgb 1.0, 1.0, 1.0: zeta 1.0, weight 0.125
-//    target bins_front: 0.08627451, 0.0, 0.08627451, 0.0
-//    target bins_back: 0.0, 0.08627451, 0.0, 0.2901961
-//    target absorbances: 0.6931472, 1.3862944, 2.302585, -0.6931472
-//    target nearest: 64928.0, 61.40625, -64768.0, -0.17698051
-//    target farthest: -65088.0, 0.30786133, 65248.0, 2.302585
+//    target bins_front: 0.17254902, 0.0, 0.14509805, 0.02745098
+//    target bins_back: 0.02745098, 0.14509805, 0.0, 0.5764706
+//    target absorbances: 1.3862944, 0.6931472, 2.302585, -0.13021414
+//    target nearest: 64928.0, -43.5625, -64768.0, 0.4473748
+//    target farthest: 1389.0, 43.40625, 65248.0, 2.302585
 //    colour of the pixel: 0.615625, 0.36875, 0.246875
 //
 // How to draw with it. Targets may have 32 bits a channel wherever 16 are named.
@@ -103,7 +103,7 @@ const PEELNET_FAINT: f32 = 0.003921569;
 // What is seen of a bin that has fragments, at least: where little light passes, order still counts a little.
 const PEELNET_LEAST_SEEN: f32 = 0.00390625;
 // Levels of 8 bits that an absorbance of 1 is.
-const PEELNET_BIN_LEVELS: f32 = 32.0;
+const PEELNET_BIN_LEVELS: f32 = 64.0;
 // Bins of depth in a slab, and levels of opacity in each, that its nearest and its farthest fragment are kept with.
 const PEELNET_BINS: f32 = 1920.0;
 const PEELNET_OPACITIES: f32 = 32.0;
@@ -142,21 +142,30 @@ struct PeelnetBetween {
     nearest: f32,
 }
 
+// A depth on a scale without two gaps in which no transparent surface lies, -1 .. 1 again. gaps: the ends of the nearer and of the farther one, as
+// zeta; four times 1 where there is none. The same in all passes of a frame.
+fn peelnet_cut(zeta: f32, gaps: vec4f) -> f32 {
+    let lengths = gaps.yw - gaps.xz;
+    let passed = clamp(vec2f(zeta) - gaps.xz, vec2f(0.0), lengths);
+    let kept = zeta + 1.0 - passed.x - passed.y;
+    return kept * (2.0 / (2.0 - lengths.x - lengths.y)) - 1.0;
+}
+
 // Absorbances of eight bins of the frame's depth, nearest first, in 8 bits.
 struct PeelnetBins {
     front: vec4f,
     back: vec4f,
 }
 
-// What a fragment adds to 8-bit targets: its absorbance, in its own bin. Whole levels, so that no order of adding changes a sum.
+// What a fragment adds to 8-bit targets: its absorbance, shared between the two bins whose middles it lies between, so that little changes as
+// it moves from one to the other, and in whole levels, so that no order of adding changes a sum.
 fn peelnet_bins(alpha: f32, zeta: f32) -> PeelnetBins {
-    let bin = min(floor(zeta * 4.0 + 4.0), 7.0);
+    let place = vec4f(clamp(zeta * 4.0 + 3.5, 0.0, 7.0));
     // At least one: a bin with any fragment is not empty.
-    let level = clamp(floor(peelnet_absorbance(alpha) * PEELNET_BIN_LEVELS + 0.5), 1.0, 255.0) / 255.0;
-    return PeelnetBins(
-        select(vec4f(0.0), vec4f(level), vec4f(bin) == vec4f(0.0, 1.0, 2.0, 3.0)),
-        select(vec4f(0.0), vec4f(level), vec4f(bin) == vec4f(4.0, 5.0, 6.0, 7.0)),
-    );
+    let level = max(floor(peelnet_absorbance(alpha) * PEELNET_BIN_LEVELS + 0.5), 1.0);
+    let front = max(vec4f(1.0) - abs(place - vec4f(0.0, 1.0, 2.0, 3.0)), vec4f(0.0));
+    let back = max(vec4f(1.0) - abs(place - vec4f(4.0, 5.0, 6.0, 7.0)), vec4f(0.0));
+    return PeelnetBins(floor(level * front + 0.5) / 255.0, floor(level * back + 0.5) / 255.0);
 }
 
 // What is let through up to the far end of each of four bins behind an absorbance.
@@ -168,7 +177,8 @@ fn peelnet_passing(before: f32, bins: vec4f) -> vec4f {
 
 // How much of the pixel's scale each of four bins takes: the root of what is seen of it, and nothing where it is empty.
 fn peelnet_shares(before: vec4f, behind: vec4f, bins: vec4f) -> vec4f {
-    return select(vec4f(0.0), sqrt(max(before - behind, vec4f(PEELNET_LEAST_SEEN))), bins > vec4f(0.0));
+    let has_any = min(bins * 255.0, vec4f(1.0));
+    return sqrt(max(before - behind, vec4f(PEELNET_LEAST_SEEN))) * has_any;
 }
 
 // Where a depth lies in its pixel, 0 .. 1, by the absorbances of its bins. Where all are empty, it is the root of the frame's depth.
@@ -311,8 +321,8 @@ fn peelnet_weigh(
 }
 
 // Where a slab ends and the next begins, in the pixel, and the number of the last slab.
-const PEELNET_FIRST_END: f32 = 0.5;
-const PEELNET_SECOND_END: f32 = 0.78;
+const PEELNET_FIRST_END: f32 = 0.52;
+const PEELNET_SECOND_END: f32 = 0.795;
 const PEELNET_THIRD_END: f32 = 1.0;
 const PEELNET_LAST_SLAB: f32 = 2.0;
 
@@ -371,27 +381,27 @@ fn peelnet_share(root_absorbance: f32, place_fraction: f32, mean_fraction: f32, 
     let input_a = vec4f(root_absorbance, place_fraction, mean_fraction, share_low);
     let input_b = vec4f(share_high, root_own, half_extent, of_own);
     let input_c = vec4f(of_nearest, 0.0, 0.0, 0.0);
-    let layer_a_a = max(vec4f(-4.4447308, -12.45114, 8.63079, 7.5926037)
-        + mat4x4f(vec4f(-0.12916751, -0.23378025, -0.10377829, -0.0032638134), vec4f(1.354511, 0.9276267, -1.2646163, -1.6568592), vec4f(-0.82462096, -1.9950281, -3.9118786, -1.4565431), vec4f(3.2038007, 4.383598, -0.8401924, -3.6072054)) * input_a
-        + mat4x4f(vec4f(1.8355491, 2.1030173, -0.7947235, -2.9951174), vec4f(-1.0995852, 0.11974643, 0.6503592, -0.75954574), vec4f(-0.5860802, 0.68915147, 2.2590032, -0.1360034), vec4f(-1.2311825, 1.5109367, -1.4606112, -2.9613047)) * input_b
-        + vec4f(7.0193987, 11.105025, -5.049142, -0.9499334) * input_c.x, vec4f(0.0));
-    let layer_a_b = max(vec4f(-2.6988559, -4.7071157, 9.237288, -6.3001018)
-        + mat4x4f(vec4f(0.023053532, 0.04718157, 0.044737656, 0.109394185), vec4f(0.7300395, 2.2387753, 1.2386922, 2.5425243), vec4f(-2.4763205, 4.491425, -3.356138, -2.5029612), vec4f(1.6975176, 4.209012, -3.6952815, 1.9296347)) * input_a
-        + mat4x4f(vec4f(-0.56269085, -0.16258518, 0.12546627, 8.098411), vec4f(1.4600329, -0.44837016, -2.3623722, -0.3876797), vec4f(-0.22685207, -0.20758802, 0.08817118, -0.0030232838), vec4f(-0.14744744, -0.8561807, -3.838719, -2.9670765)) * input_b
-        + vec4f(4.151487, -0.062713705, -2.7409785, 0.8227554) * input_c.x, vec4f(0.0));
-    let layer_a_c = max(vec4f(0.67285746, -1.6168736, -3.1445649, 4.7891827)
-        + mat4x4f(vec4f(-0.06522365, 0.050646577, 0.016327161, 0.1985529), vec4f(-4.1948524, -3.435037, 1.4223378, 0.18305767), vec4f(-0.36326778, -1.3971599, -4.0033393, 1.2647372), vec4f(-3.6689143, -2.3201852, -4.2180443, -7.7647033)) * input_a
-        + mat4x4f(vec4f(-0.24650317, -0.44864386, -3.7051437, -2.1363556), vec4f(0.7545351, 0.1321389, 0.56673694, -0.08666467), vec4f(0.32870808, -1.445469, 0.82238525, -1.2126167), vec4f(0.46502697, -0.96150774, 5.759959, -2.3914046)) * input_b
-        + vec4f(2.7547433, 5.516411, 2.421212, -1.0949827) * input_c.x, vec4f(0.0));
-    let layer_a_d = max(vec4f(-2.004455, 0.0, 0.0, 0.0)
-        + mat4x4f(vec4f(0.126243, 0.0, 0.0, 0.0), vec4f(-0.6331345, 0.0, 0.0, 0.0), vec4f(-1.3468734, 0.0, 0.0, 0.0), vec4f(-1.3279333, 0.0, 0.0, 0.0)) * input_a
-        + mat4x4f(vec4f(0.534626, 0.0, 0.0, 0.0), vec4f(0.2766432, 0.0, 0.0, 0.0), vec4f(-4.0262127, 0.0, 0.0, 0.0), vec4f(-1.5510436, 0.0, 0.0, 0.0)) * input_b
-        + vec4f(6.103607, 0.0, 0.0, 0.0) * input_c.x, vec4f(0.0));
-    let layer_b_a = 1.0 / (1.0 + exp(min(-(0.0043100906
-        + dot(vec4f(-0.7046865, 0.6445005, -0.3890984, -1.2050401), layer_a_a)
-        + dot(vec4f(-0.41688615, 1.3796486, 0.42346632, 1.6046996), layer_a_b)
-        + dot(vec4f(0.425834, -0.97543293, -0.50007266, -0.6161687), layer_a_c)
-        + 0.42453918 * layer_a_d.x), 80.0)));
+    let layer_a_a = max(vec4f(-7.74626, -4.987284, 6.8330207, 2.6006157)
+        + mat4x4f(vec4f(0.028165719, -0.16301282, 0.12854649, -0.036809817), vec4f(1.4931492, 0.060856618, -0.7634369, -1.196998), vec4f(1.738851, 1.0815262, -1.3401743, -3.0486743), vec4f(2.7355497, 1.2439528, -2.1798103, -1.6752619)) * input_a
+        + mat4x4f(vec4f(1.7174, 3.6957066, 1.8948824, -3.5197587), vec4f(0.03757935, -0.3634256, 0.14968027, -1.048177), vec4f(1.8326362, 4.56831, 0.88704556, -0.025302937), vec4f(-0.6302577, -4.149317, -0.5698873, -1.7852333)) * input_b
+        + vec4f(4.904782, 2.937603, -7.5911427, 4.8079724) * input_c.x, vec4f(0.0));
+    let layer_a_b = max(vec4f(-4.8817883, -13.783739, -5.871945, -3.4807048)
+        + mat4x4f(vec4f(0.14136462, -0.018400472, 0.147474, 0.1619196), vec4f(0.8862052, 1.5518938, 1.4893395, 4.4712706), vec4f(0.8034912, -0.7157984, -2.165897, 1.9540117), vec4f(2.7208154, 1.9447052, 0.11009571, 4.791615)) * input_a
+        + mat4x4f(vec4f(0.51669496, 7.406374, 8.483767, 0.14812887), vec4f(0.84667283, 0.17858222, -0.5728708, -0.38876098), vec4f(-0.797626, -0.08514846, -0.089822605, -0.6516477), vec4f(-1.1141516, 0.3707778, -2.9017663, -0.40932256)) * input_b
+        + vec4f(4.5729346, 5.9529195, 0.59769344, -1.4762163) * input_c.x, vec4f(0.0));
+    let layer_a_c = max(vec4f(10.744685, 5.386589, 1.9286716, 7.1108565)
+        + mat4x4f(vec4f(0.14744893, 0.06497582, 0.06170215, 0.13458183), vec4f(0.6831056, -0.626419, -1.451423, -1.0710378), vec4f(-3.296951, -1.4946929, -5.3357825, 1.2166675), vec4f(-4.4420633, -5.0873213, 0.7774448, -5.527652)) * input_a
+        + mat4x4f(vec4f(-1.7308797, -1.7830876, -4.7746954, -3.7539723), vec4f(-0.074359015, -0.34981355, 1.2132453, 0.14599338), vec4f(-2.1811872, 0.41846958, -1.2143759, -1.7588558), vec4f(-2.5690777, -5.337838, 3.1933599, -2.0102096)) * input_b
+        + vec4f(-4.9002113, 1.3711538, 1.3844, -1.5661898) * input_c.x, vec4f(0.0));
+    let layer_a_d = max(vec4f(-4.1393766, 0.0, 0.0, 0.0)
+        + mat4x4f(vec4f(0.120547436, 0.0, 0.0, 0.0), vec4f(-2.179513, 0.0, 0.0, 0.0), vec4f(1.0191345, 0.0, 0.0, 0.0), vec4f(1.4273268, 0.0, 0.0, 0.0)) * input_a
+        + mat4x4f(vec4f(-1.3762155, 0.0, 0.0, 0.0), vec4f(1.5405763, 0.0, 0.0, 0.0), vec4f(-0.94817376, 0.0, 0.0, 0.0), vec4f(-1.0341878, 0.0, 0.0, 0.0)) * input_b
+        + vec4f(5.3218045, 0.0, 0.0, 0.0) * input_c.x, vec4f(0.0));
+    let layer_b_a = 1.0 / (1.0 + exp(min(-(0.26942188
+        + dot(vec4f(-0.63669765, 0.41556105, -0.4275528, -0.6414621), layer_a_a)
+        + dot(vec4f(-0.36713734, 0.86803323, 1.1775542, 0.8426151), layer_a_b)
+        + dot(vec4f(0.389859, -0.8042323, -0.78499424, -0.57645327), layer_a_c)
+        + 0.5059833 * layer_a_d.x), 80.0)));
     return layer_b_a;
 }
 
@@ -399,7 +409,7 @@ fn peelnet_share(root_absorbance: f32, place_fraction: f32, mean_fraction: f32, 
 fn peelnet_weight(root_absorbance: f32, place_fraction: f32, mean_fraction: f32, share_low: f32, share_high: f32, root_own: f32, half_extent: f32, of_own: f32, of_nearest: f32) -> f32 {
     let root = clamp(root_absorbance, 0.0, 256.0);
     let share = peelnet_share(
-        clamp(root_absorbance, -42631.15, 42642.266), clamp(place_fraction, -2872.5894, 2873.6938), clamp(mean_fraction, -1648.2158, 1649.3127), clamp(share_low, -2004.671, 2004.9794), clamp(share_high, -2257.1475, 2258.8218), clamp(root_own, -5799.9727, 5801.623), clamp(half_extent, -1960.336, 1961.962), clamp(of_own, -1633.816, 1635.652), clamp(of_nearest, -1636.6312, 1638.464));
+        clamp(root_absorbance, -42139.004, 42150.098), clamp(place_fraction, -2917.437, 2918.5132), clamp(mean_fraction, -1656.5862, 1657.6562), clamp(share_low, -2015.2238, 2015.5382), clamp(share_high, -2258.5388, 2260.2131), clamp(root_own, -5798.6147, 5800.265), clamp(half_extent, -2140.9082, 2142.477), clamp(of_own, -1612.3574, 1614.1953), clamp(of_nearest, -1618.6206, 1620.4541));
     let bounds = clamp(vec2f(share_low, share_high), vec2f(0.0), vec2f(1.0));
     return exp(-root * root * mix(bounds.x, bounds.y, share));
 }

@@ -1,5 +1,14 @@
-// Where a fragment lies in its pixel, 0 .. 1, on a scale of depth of which no opacities are known: what is in front is seen most.
+// Where a fragment lies in its pixel.
+import package::helpers::range::transparent_range;
+import package::learned::weight::{peelnet_cut, peelnet_zeta_in};
+import package::scene::camera::camera;
 
+// A depth on the scale of the frame without the gaps between boxes, -1 .. 1.
+fn zeta_of(depth: f32) -> f32 {
+    return peelnet_cut(peelnet_zeta_in(depth, transparent_range()), camera.gaps);
+}
+
+// Of which no opacities are known, 0 .. 1: what is in front is seen most.
 fn in_frame(zeta: f32) -> f32 {
     return sqrt(0.5 * zeta + 0.5);
 }

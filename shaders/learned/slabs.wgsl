@@ -1,9 +1,7 @@
 // Fragments of less opacity are composited, but are never a slab's nearest or farthest.
 const PEELNET_FAINT: f32 = 0.003921569;
-// What is seen of a bin that has fragments, at least: where little light passes, order still counts a little.
-const PEELNET_LEAST_SEEN: f32 = 0.00390625;
 // Levels of 8 bits that an absorbance of 1 is.
-const PEELNET_BIN_LEVELS: f32 = 32.0;
+const PEELNET_BIN_LEVELS: f32 = 64.0;
 // Bins of depth in a slab, and levels of opacity in each, that its nearest and its farthest fragment are kept with.
 const PEELNET_BINS: f32 = 1920.0;
 const PEELNET_OPACITIES: f32 = 32.0;
@@ -42,48 +40,72 @@ struct PeelnetBetween {
     nearest: f32,
 }
 
-// Absorbances of eight bins of the frame's depth, nearest first, in 8 bits.
-struct PeelnetBins {
-    front: vec4f,
-    back: vec4f,
+// A depth on a scale without two gaps in which no transparent surface lies, -1 .. 1 again. gaps: the ends of the nearer and of the farther one, as
+// zeta; four times 1 where there is none. The same in all passes of a frame.
+fn peelnet_cut(zeta: f32, gaps: vec4f) -> f32 {
+    let lengths = gaps.yw - gaps.xz;
+    let passed = clamp(vec2f(zeta) - gaps.xz, vec2f(0.0), lengths);
+    let kept = zeta + 1.0 - passed.x - passed.y;
+    return kept * (2.0 / (2.0 - lengths.x - lengths.y)) - 1.0;
 }
 
-// What a fragment adds to 8-bit targets: its absorbance, in its own bin. Whole levels, so that no order of adding changes a sum.
+// What is known of a pixel's depths, in 8 bits.
+struct PeelnetBins {
+    // Absorbances of eight bins of the frame's depth, nearest first.
+    front: vec4f,
+    back: vec4f,
+    // The level of the nearest depth, counted from the far end, and of the farthest.
+    range: vec2f,
+}
+
+// What a fragment writes. Its absorbance is added, shared between the two bins whose middles it lies between, so that little changes as it
+// moves from one to the other, and in whole levels, so that no order of adding changes a sum. Of levels of depth the most is kept: rounded
+// down from the near end, and up from the far end.
 fn peelnet_bins(alpha: f32, zeta: f32) -> PeelnetBins {
-    let bin = min(floor(zeta * 4.0 + 4.0), 7.0);
+    let place = vec4f(clamp(zeta * 4.0 + 3.5, 0.0, 7.0));
     // At least one: a bin with any fragment is not empty.
-    let level = clamp(floor(peelnet_absorbance(alpha) * PEELNET_BIN_LEVELS + 0.5), 1.0, 255.0) / 255.0;
+    let level = max(floor(peelnet_absorbance(alpha) * PEELNET_BIN_LEVELS + 0.5), 1.0);
+    let front = max(vec4f(1.0) - abs(place - vec4f(0.0, 1.0, 2.0, 3.0)), vec4f(0.0));
+    let back = max(vec4f(1.0) - abs(place - vec4f(4.0, 5.0, 6.0, 7.0)), vec4f(0.0));
+    let depth = 127.5 * (zeta + 1.0);
     return PeelnetBins(
-        select(vec4f(0.0), vec4f(level), vec4f(bin) == vec4f(0.0, 1.0, 2.0, 3.0)),
-        select(vec4f(0.0), vec4f(level), vec4f(bin) == vec4f(4.0, 5.0, 6.0, 7.0)),
+        floor(level * front + 0.5) / 255.0,
+        floor(level * back + 0.5) / 255.0,
+        vec2f(255.0 - floor(depth), ceil(depth)) / 255.0,
     );
 }
 
-// What is let through up to the far end of each of four bins behind an absorbance.
-fn peelnet_passing(before: f32, bins: vec4f) -> vec4f {
+// What is let through by each of four bins and by what is before it.
+fn peelnet_seen_behind(before: f32, bins: vec4f) -> vec4f {
     let two = bins.x + bins.y;
-    let absorbances = vec4f(bins.x, two, two + bins.z, two + bins.z + bins.w);
-    return exp((vec4f(before) + absorbances) * (-255.0 / PEELNET_BIN_LEVELS));
+    let levels = vec4f(before) + vec4f(bins.x, two, two + bins.z, two + bins.z + bins.w);
+    return exp(levels * (-255.0 / PEELNET_BIN_LEVELS));
 }
 
-// How much of the pixel's scale each of four bins takes: the root of what is seen of it, and nothing where it is empty.
-fn peelnet_shares(before: vec4f, behind: vec4f, bins: vec4f) -> vec4f {
-    return select(vec4f(0.0), sqrt(max(before - behind, vec4f(PEELNET_LEAST_SEEN))), bins > vec4f(0.0));
+// How much of eight bins lies before a place among them: twice that, and a number that is the same for all places.
+fn peelnet_up_to(place: f32, front: vec4f, back: vec4f) -> f32 {
+    // A bin's own part is half of 1 + |place - its begin| - |place - its end|.
+    let a = abs(vec4f(place) - vec4f(0.0, 1.0, 2.0, 3.0));
+    let b = abs(vec4f(place) - vec4f(4.0, 5.0, 6.0, 7.0));
+    return dot(front, a - vec4f(a.yzw, b.x)) + dot(back, b - vec4f(b.yzw, abs(place - 8.0)));
 }
 
-// Where a depth lies in its pixel, 0 .. 1, by the absorbances of its bins. Where all are empty, it is the root of the frame's depth.
-fn peelnet_in_pixel(zeta: f32, front: vec4f, back: vec4f) -> f32 {
+// Where a depth lies in its pixel, 0 .. 1, by what is known of the pixel's depths: between its ends each bin takes as much as its length times
+// the root of what is seen of it. Where all bins are empty, it is the root of the frame's depth.
+fn peelnet_in_pixel(zeta: f32, front: vec4f, back: vec4f, range: vec2f) -> f32 {
     let place = zeta * 4.0 + 4.0;
-    let none = vec4f(0.0);
-    let one = vec4f(1.0);
-    let near = peelnet_passing(0.0, front);
-    let far = peelnet_passing(dot(front, one), back);
-    let of_front = peelnet_shares(vec4f(1.0, near.xyz), near, front);
-    let of_back = peelnet_shares(vec4f(near.w, far.xyz), far, back);
-    let passed = dot(of_front, clamp(vec4f(place) - vec4f(0.0, 1.0, 2.0, 3.0), none, one))
-        + dot(of_back, clamp(vec4f(place) - vec4f(4.0, 5.0, 6.0, 7.0), none, one));
-    let all = dot(of_front + of_back, one);
-    return select(min(passed / max(all, 1e-6), 1.0), sqrt(place * 0.125), all == 0.0);
+    let near = peelnet_seen_behind(0.0, front);
+    let far = peelnet_seen_behind(dot(front, vec4f(1.0)), back);
+    let of_front = sqrt(abs(vec4f(1.0, near.xyz) - near));
+    let of_back = sqrt(abs(vec4f(near.w, far.xyz) - far));
+    // The pixel's ends, in bins.
+    let levels = floor(range * 255.0 + 0.5);
+    let nearest = 255.0 - levels.x;
+    let begin = peelnet_up_to(nearest * (8.0 / 255.0), of_front, of_back);
+    let end = peelnet_up_to(max(levels.y, nearest + 1.0) * (8.0 / 255.0), of_front, of_back);
+    let all = end - begin;
+    let passed = (peelnet_up_to(place, of_front, of_back) - begin) / max(all, 1e-6);
+    return select(clamp(passed, 0.0, 1.0), sqrt(place * 0.125), all == 0.0);
 }
 
 // t: where in its pixel the fragment lies, 0 .. 1.

@@ -1,7 +1,7 @@
 // Where a slab ends and the next begins, in the pixel, and the number of the last slab.
 const PEELNET_FIRST_END: f32 = 0.34;
-const PEELNET_SECOND_END: f32 = 0.63;
-const PEELNET_THIRD_END: f32 = 0.8;
+const PEELNET_SECOND_END: f32 = 0.68;
+const PEELNET_THIRD_END: f32 = 0.87;
 const PEELNET_LAST_SLAB: f32 = 3.0;
 
 struct PeelnetStatistics {

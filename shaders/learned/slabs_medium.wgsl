@@ -1,6 +1,6 @@
 // Where a slab ends and the next begins, in the pixel, and the number of the last slab.
-const PEELNET_FIRST_END: f32 = 0.5;
-const PEELNET_SECOND_END: f32 = 0.78;
+const PEELNET_FIRST_END: f32 = 0.475;
+const PEELNET_SECOND_END: f32 = 0.81;
 const PEELNET_THIRD_END: f32 = 1.0;
 const PEELNET_LAST_SLAB: f32 = 2.0;
 

@@ -18,6 +18,8 @@ struct Camera {
     warp_scale: f32,
     // far / (far - near): window depth is this less a multiple of 1 / z.
     window_depth_at_infinity: f32,
+    // Ends of two stretches of the depth warp without transparent objects.
+    gaps: vec4f,
 }
 
 @group(0) @binding(0) var<uniform> camera: Camera;

@@ -2,6 +2,7 @@
 //!
 //! Only the standard library is used, so that this compiles in a second before anything else does.
 
+mod apart;
 mod checks;
 mod measure;
 mod product;

@@ -1,7 +1,7 @@
 //! Every committed result of a machine, by one command.
 
 use crate::{
-    Outcome,
+    Outcome, apart,
     product::{Program, scene_file, scene_files},
     root, run,
 };
@@ -13,6 +13,9 @@ const VALIDATION_SCENES: [&str; 3] = ["intersecting", "sixteen-050", "sixteen-ra
 /// One or two of each family: sixty frames of sixty settings would take an hour.
 const PATH_METHODS: &str = "abuffer,painter-object,painter-triangle,wboit-eq9,mboit4,mboit6,wavelet-3:bounds=pixel,bins-8,avboit,kbuffer-4,stochastic-16,deep-thesis,nmt,dfaoit,deep-anchored-medium,deep-small,deep-medium,deep-large";
 
+/// What is judged with a surface apart from all others.
+const APART_METHODS: &str = "abuffer,wboit-eq9,mboit4,mboit6,wavelet-3:bounds=pixel,bins-8,bins-16,avboit,kbuffer-4,slabs:keep=small,slabs:keep=medium,slabs,deep-anchored-medium,deep-small,deep-medium,deep-large,deep-medium:range=boxes,deep-medium:range=frame";
+
 /// Commands of peelnet whose results are kept: the name, the command without `--out`, in which names in angle brackets stand for what
 /// [`filled`] puts there, and the files of its output that are kept; where none are, what it prints is, as JSON.
 ///
@@ -21,6 +24,10 @@ const STEPS: &str = "
     stress | stress | stress.csv.xz stress.md
     held-out | bench <held-out> --size 512x384 --views 2 --frames 3 | results.json.xz table.md pareto.svg pareto-mean.svg
     validation | bench <validation> --size 512x384 --views 1 --frames 3 | results.json.xz table.md
+    apart-none | bench <apart none> --size 256x192 --views 1 --frames 0 --methods <apart> | table.md
+    apart-near | bench <apart near> --size 256x192 --views 1 --frames 0 --methods <apart> | table.md
+    apart-quarter | bench <apart quarter> --size 256x192 --views 1 --frames 0 --methods <apart> | table.md
+    apart-backdrop | bench <apart backdrop> --size 256x192 --views 1 --frames 0 --methods <apart> | table.md
     path | bench path sixteen-held smoke-held --size 256x192 --methods <path> | path.csv path.md path-error.svg path-change.svg
     samples | bench cups-held foliage-held --samples 4 --size 256x192 --views 1 --frames 3 --methods <path> | table.md
     effects | bench effects --size 512x384 --frames 9 | effects.md effects-layers.svg
@@ -43,6 +50,13 @@ fn filled(line: &str) -> Result<String, String> {
     let extract = "extract data/scenes/sixteen-050.toml --size 1024x768 --json";
     // Those that no network learns from.
     let held_out = scene_files(|name| name.ends_with("-held"))?;
+    let mut line = line.replace("<apart>", APART_METHODS);
+    for (kind, ..) in apart::KINDS {
+        let name = format!("<apart {kind}>");
+        if line.contains(&name) {
+            line = line.replace(&name, &apart::scenes(kind)?.join(" "));
+        }
+    }
     Ok(line
         .replace("<held-out>", &held_out.join(" "))
         .replace("<validation>", &VALIDATION_SCENES.map(scene_file).join(" "))
@@ -88,6 +102,15 @@ pub fn measure(machine: &str, names: &[&str]) -> Outcome {
             }
         }
         times += &format!("{:>7.1} s  {name}\n", begin.elapsed().as_secs_f64());
+    }
+    let tables = apart::KINDS.map(|(kind, ..)| into.join(format!("apart-{kind}/table.md")));
+    if let Ok(tables) = tables
+        .iter()
+        .map(fs::read_to_string)
+        .collect::<Result<Vec<_>, _>>()
+    {
+        let file = into.join("apart.md");
+        fs::write(&file, apart::table(&tables)?).map_err(|e| io(&file, e))?;
     }
     let together = all.elapsed().as_secs_f64();
     println!(

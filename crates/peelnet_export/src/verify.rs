@@ -392,7 +392,7 @@ mod tests {
         let apart = halves.iter().zip(&whole).map(|(a, b)| (a - b).abs());
         let most = apart.fold(0.0, f32::max);
         assert!(most > EXPORT_F32 as f32, "{most}: not in 16 bits");
-        let shipped = Model::shipped(Recipe::MEDIUM).expect("ships");
+        let shipped = Model::shipped(Recipe::NMT).expect("ships");
         let text = export(&shipped, Language::Wgsl).expect("exports");
         assert!(refusal(verify(&gpu, &shipped, &text)).contains("differs from the model"));
     }

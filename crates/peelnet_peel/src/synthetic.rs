@@ -148,7 +148,10 @@ impl World {
             let (met, at) = (random.unit(), sheet.middle);
             if met < 0.9 {
                 let [r, g, b] = sheet.color;
-                list.push((self.near * (self.log_range * at).exp(), [r, g, b, sheet.alpha]));
+                list.push((
+                    self.near * (self.log_range * at).exp(),
+                    [r, g, b, sheet.alpha],
+                ));
             }
         }
         for o in &self.objects {
@@ -306,7 +309,10 @@ mod tests {
         }
         let most = layers.iter().max().copied().unwrap_or(0);
         assert!(most >= 100 && layers.contains(&3), "{most}");
-        assert!(apart[0] > 150 && apart[1] > 50 && apart[2] > 15, "{apart:?}");
+        assert!(
+            apart[0] > 150 && apart[1] > 50 && apart[2] > 15,
+            "{apart:?}"
+        );
         assert!(ranges.iter().any(|&r| r < 0.1) && ranges.iter().any(|&r| r > 8.0));
     }
 }

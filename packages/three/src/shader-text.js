@@ -45,8 +45,8 @@ function widened( language, expression, channels ) {
 /** The text that a back end compiles. */
 export const libraryText = ( model, isGlsl ) => isGlsl ? model.glsl : model.wgsl;
 
-// What was read as four channels, as the names and types of the description. A target that was not drawn is the range of the
-// whole frame: both of its ends at their most.
+// What was read as four channels, as the names and types of the description. A target that was not drawn is the bins of a pixel
+// without fragments: then slabs are cut by the frame's depth.
 function reads( language, model, names, drawn ) {
 
 	const targets = targetsByName( model.description );
@@ -54,7 +54,7 @@ function reads( language, model, names, drawn ) {
 	return names.map( ( name ) => {
 
 		const { channels } = FORMATS[ targets.get( name ).format ];
-		const value = drawn.has( name ) ? `read_${ name }.${ CHANNELS[ channels ] }` : language.expression( `${ VECTORS[ channels ] }f(1.0)` );
+		const value = drawn.has( name ) ? `read_${ name }.${ CHANNELS[ channels ] }` : language.expression( `${ VECTORS[ channels ] }f(0.0)` );
 
 		return '\t' + language.constant( VECTORS[ channels ], name, value );
 

@@ -1,11 +1,10 @@
 // Slabs, pass 1 over boxes: the range of a pixel from where its ray enters a box to where it leaves it, in 8 bits under MAX blending: the
 // level of depth counted from the far end, rounded down, and from the near end, rounded up.
-import package::helpers::range::transparent_range;
-import package::learned::weight::peelnet_zeta_in;
+import package::helpers::slabs::zeta_of;
 import package::scene::box_vertex::BoxFace;
 
 fn level(depth: f32) -> f32 {
-    return 127.5 * (peelnet_zeta_in(depth, transparent_range()) + 1.0);
+    return 127.5 * (zeta_of(depth) + 1.0);
 }
 
 @fragment

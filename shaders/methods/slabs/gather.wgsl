@@ -1,9 +1,9 @@
 // Slabs, pass 3: the exported text's weight of each fragment.
 // Variants: none | small | medium | tinted | small tinted | medium tinted | frame | small frame | medium frame | tinted frame | small tinted frame | medium tinted frame | boxes | small boxes | medium boxes | tinted boxes | small tinted boxes | medium tinted boxes
-import package::helpers::range::transparent_range;
+import package::helpers::slabs::zeta_of;
 @if(frame) import package::helpers::slabs::in_frame;
 @if(boxes) import package::helpers::slabs::in_boxes;
-import package::learned::weight::{peelnet_fragment, peelnet_zeta_in};
+import package::learned::weight::peelnet_fragment;
 @if(!frame && !boxes) import package::learned::weight::peelnet_in_pixel;
 import package::scene::shade::shade;
 @if(tinted) import package::scene::shade::covering;
@@ -14,9 +14,9 @@ import package::scene::visible::visible;
 @group(1) @binding(1) var nearest: texture_2d<f32>;
 @if(!small) @group(1) @binding(2) var farthest: texture_2d<f32>;
 @if(!medium) @group(1) @binding(3) var firsts: texture_2d<f32>;
-@if(boxes) @group(1) @binding(4) var range: texture_2d<f32>;
-@if(!frame && !boxes) @group(1) @binding(4) var bins_front: texture_2d<f32>;
-@if(!frame && !boxes) @group(1) @binding(5) var bins_back: texture_2d<f32>;
+@if(!frame) @group(1) @binding(4) var range: texture_2d<f32>;
+@if(!frame && !boxes) @group(1) @binding(5) var bins_front: texture_2d<f32>;
+@if(!frame && !boxes) @group(1) @binding(6) var bins_back: texture_2d<f32>;
 
 struct Sums {
     @location(0) sum: vec4f,
@@ -31,10 +31,15 @@ fn fragment_main(surface: Surface) -> Sums {
     }
     let pixel = vec2u(surface.position.xy);
     let color = shade(surface);
-    let zeta = peelnet_zeta_in(surface.depth_linear, transparent_range());
+    let zeta = zeta_of(surface.depth_linear);
     @if(frame) let t = in_frame(zeta);
     @elif(boxes) let t = in_boxes(zeta, textureLoad(range, pixel, 0).xy);
-    @else let t = peelnet_in_pixel(zeta, textureLoad(bins_front, pixel, 0), textureLoad(bins_back, pixel, 0));
+    @else let t = peelnet_in_pixel(
+        zeta,
+        textureLoad(bins_front, pixel, 0),
+        textureLoad(bins_back, pixel, 0),
+        textureLoad(range, pixel, 0).xy,
+    );
     let a = textureLoad(absorbances, pixel, 0);
     let n = textureLoad(nearest, pixel, 0);
     @if(!small) let f = textureLoad(farthest, pixel, 0);

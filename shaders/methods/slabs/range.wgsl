@@ -1,6 +1,6 @@
-// Slabs, pass 1: the exported text's absorbances of bins of depth, by adding 8 bits.
-import package::helpers::range::transparent_range;
-import package::learned::weight::{peelnet_bins, peelnet_zeta_in};
+// Slabs, pass 1: the exported text's absorbances of bins of depth, by adding 8 bits, and the pixel's two ends, by MAX blending.
+import package::helpers::slabs::zeta_of;
+import package::learned::weight::peelnet_bins;
 import package::scene::shade::opacity;
 import package::scene::surface::Surface;
 import package::scene::visible::visible;
@@ -8,6 +8,7 @@ import package::scene::visible::visible;
 struct Bins {
     @location(0) front: vec4f,
     @location(1) back: vec4f,
+    @location(2) range: vec2f,
 }
 
 @fragment
@@ -15,6 +16,6 @@ fn fragment_main(surface: Surface) -> Bins {
     if !visible(surface) {
         discard;
     }
-    let bins = peelnet_bins(opacity(surface), peelnet_zeta_in(surface.depth_linear, transparent_range()));
-    return Bins(bins.front, bins.back);
+    let bins = peelnet_bins(opacity(surface), zeta_of(surface.depth_linear));
+    return Bins(bins.front, bins.back, bins.range);
 }

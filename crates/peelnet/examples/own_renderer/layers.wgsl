@@ -26,15 +26,31 @@ fn whole(@builtin(vertex_index) vertex: u32) -> @builtin(position) vec4f {
     return vec4f(vec2f(f32(vertex & 1u), f32(vertex >> 1u)) * 2.0 - 1.0, 0.5, 1.0);
 }
 
-@group(0) @binding(0) var range: texture_2d<f32>;
-@group(0) @binding(1) var absorbances: texture_2d<f32>;
-@group(0) @binding(2) var nearest: texture_2d<f32>;
-@group(0) @binding(3) var farthest: texture_2d<f32>;
-@group(0) @binding(4) var sums: texture_2d<f32>;
+@group(0) @binding(0) var bins_front: texture_2d<f32>;
+@group(0) @binding(1) var bins_back: texture_2d<f32>;
+@group(0) @binding(2) var range: texture_2d<f32>;
+@group(0) @binding(3) var absorbances: texture_2d<f32>;
+@group(0) @binding(4) var nearest: texture_2d<f32>;
+@group(0) @binding(5) var farthest: texture_2d<f32>;
+@group(0) @binding(6) var sums: texture_2d<f32>;
 
 // In the range of depth that the layers span.
 fn zeta(depth: f32) -> f32 {
     return peelnet_zeta(depth, 1.0, 8.0);
+}
+
+// Where in its pixel a layer lies.
+fn place(in: Varyings) -> f32 {
+    let at = vec2u(in.position.xy);
+    let front = textureLoad(bins_front, at, 0);
+    let back = textureLoad(bins_back, at, 0);
+    return peelnet_in_pixel(zeta(in.depth), front, back, textureLoad(range, at, 0).xy);
+}
+
+struct Bins {
+    @location(0) front: vec4f,
+    @location(1) back: vec4f,
+    @location(2) range: vec2f,
 }
 
 struct Statistics {
@@ -44,13 +60,14 @@ struct Statistics {
 }
 
 @fragment
-fn range_of_pixel(in: Varyings) -> @location(0) vec2f {
-    return peelnet_pixel_range(zeta(in.depth));
+fn bins_of_pixel(in: Varyings) -> Bins {
+    let bins = peelnet_bins(in.color.a, zeta(in.depth));
+    return Bins(bins.front, bins.back, bins.range);
 }
 
 @fragment
 fn statistics(in: Varyings) -> Statistics {
-    let s = peelnet_statistics(in.color.a, zeta(in.depth), textureLoad(range, vec2u(in.position.xy), 0).xy);
+    let s = peelnet_statistics(in.color.a, place(in));
     return Statistics(s.absorbances, s.nearest, s.farthest);
 }
 
@@ -59,8 +76,7 @@ fn weighted(in: Varyings) -> @location(0) vec4f {
     let at = vec2u(in.position.xy);
     let w = peelnet_fragment(
         in.color.a,
-        zeta(in.depth),
-        textureLoad(range, at, 0).xy,
+        place(in),
         textureLoad(absorbances, at, 0),
         textureLoad(nearest, at, 0),
         textureLoad(farthest, at, 0),

@@ -18,6 +18,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let black = Color::TRANSPARENT;
     let target = |format, clear, blend| Target::new(&program.device, format, clear, blend);
     let range = target(Rg8Unorm, black, Some((Max, Max)));
+    let [bins_front, bins_back] = [(); 2].map(|()| target(Rgba8Unorm, black, Some((Add, Add))));
     let absorbances = target(Rgba16Float, black, Some((Add, Add)));
     // What maxima of levels start from: the lowest half float.
     let [r, g, b] = [-65504.0; 3];
@@ -29,14 +30,17 @@ fn main() -> Result<(), Box<dyn Error>> {
 
     let statistics = [&absorbances, &nearest, &farthest];
     let known = [
-        (0, &range),
-        (1, &absorbances),
-        (2, &nearest),
-        (3, &farthest),
+        (0, &bins_front),
+        (1, &bins_back),
+        (2, &range),
+        (3, &absorbances),
+        (4, &nearest),
+        (5, &farthest),
     ];
-    let resolved = [(1, &absorbances), (4, &sums)];
-    program.draw(["layer", "range_of_pixel"], 4, &[], &[&range]);
-    program.draw(["layer", "statistics"], 4, &known[..1], &statistics);
+    let resolved = [(3, &absorbances), (6, &sums)];
+    let bins = [&bins_front, &bins_back, &range];
+    program.draw(["layer", "bins_of_pixel"], 4, &[], &bins);
+    program.draw(["layer", "statistics"], 4, &known[..3], &statistics);
     program.draw(["layer", "weighted"], 4, &known, &[&sums]);
     program.draw(["whole", "resolve"], 1, &resolved, &[&picture]);
     let pixels = program.finish(&picture)?;

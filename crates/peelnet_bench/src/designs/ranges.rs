@@ -70,7 +70,7 @@ pub(super) fn of_boxes(view: &View, scene: &Scene, camera: &Camera, size: [u32; 
         let direction = world_from_view.transform_vector3(direction);
         let boxes = boxes.iter();
         let crossed = boxes.filter_map(|b| crossed(b, camera.position, direction));
-        let zeta = |z: f32| view.warp.apply(z.clamp(camera.near, camera.far).into());
+        let zeta = |z: f32| view.warp.cut(z.clamp(camera.near, camera.far).into());
         let zetas: Vec<f64> = crossed.flatten().map(zeta).collect();
         if zetas.is_empty() {
             Scale::WHOLE
@@ -108,7 +108,7 @@ pub(super) fn of_last(view: &View, before: &View, width: usize, height: usize) -
     let ends = spread(&ends, height, width, &|i| i / width);
     let of_place = |place: usize| match ends[place] {
         ends @ [low, high] if low <= high => {
-            Scale::from_ends(ends.map(|z| view.warp.apply(z.into())))
+            Scale::from_ends(ends.map(|z| view.warp.cut(z.into())))
         }
         _ => Scale::WHOLE,
     };
@@ -129,7 +129,7 @@ impl Quantiles {
     pub fn from_view(view: &View) -> Self {
         let mut bins = vec![0.0; BINS];
         for f in view.stacks.iter().flat_map(|stack| &stack.fragments) {
-            let t = 0.5 + 0.5 * view.warp.apply(f.depth.into());
+            let t = 0.5 + 0.5 * view.warp.cut(f.depth.into());
             bins[((t * BINS as f64) as usize).min(BINS - 1)] += absorbance(f.alpha);
         }
         let total: f64 = bins.iter().sum();

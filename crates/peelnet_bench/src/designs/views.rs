@@ -86,7 +86,7 @@ impl Stacked<'_> {
 
     /// A depth on the scale that is cut.
     pub(super) fn zeta(&self, source: Source, depth: f32) -> f64 {
-        let zeta = self.view.warp.apply(depth.into());
+        let zeta = self.view.warp.cut(depth.into());
         match &self.view.quantiles {
             Some(quantiles) if source == Source::Quantiles => quantiles.apply(zeta),
             _ => zeta,

@@ -6,7 +6,7 @@ use super::{
 };
 use crate::stage::rectangle;
 use glam::Vec3;
-use peelnet_core::{fragment::Fragment, guards::EMISSIVE_ALPHA};
+use peelnet_core::{fragment::Fragment, guards::EMISSIVE_ALPHA, random::Random};
 use peelnet_scene::{Camera, Light, Lighting, Material, Object, Source, suite};
 
 /// Every stress case, in the order of the specification.
@@ -217,6 +217,35 @@ pub const CASES: &[Case] = &[
         }),
     },
     Case {
+        id: "apart",
+        what: "a surface or two far before, between and behind twenty layers, as objects of their own and of the layers' mesh",
+        breaks: "ranges of depth: all but the one surface falls into one slab",
+        work: Work::Frames(|| {
+            let places: [(&str, &[(f32, f32)]); 9] = [
+                ("none", &[]),
+                ("near", &[(0.4, 0.15)]),
+                ("at a quarter", &[(1.25, 0.15)]),
+                ("between", &[(16.0, 0.3)]),
+                ("behind", &[(15.0, 0.3)]),
+                ("far behind", &[(60.0, 0.3)]),
+                ("two near", &[(0.25, 0.15), (1.25, 0.15)]),
+                ("near and behind", &[(0.4, 0.15), (15.0, 0.3)]),
+                ("very near", &[(0.1, 0.3)]),
+            ];
+            let own = places.map(|(name, apart)| {
+                // Those behind a surface between begin far behind it.
+                let split = if name == "between" { 10.0 } else { 1.0 };
+                let mut trial = trial(twenty(split, apart));
+                trial.scene.name = format!("{name}, own");
+                trial
+            });
+            let joined = places[1..]
+                .iter()
+                .map(|(name, apart)| one_mesh(name, apart));
+            own.into_iter().chain(joined).collect()
+        }),
+    },
+    Case {
         id: "intersecting",
         what: "quads that reach through one another, three in a cycle",
         breaks: "sorting of objects and triangles",
@@ -360,6 +389,9 @@ pub const CASES: &[Case] = &[
 /// Near and far plane of most cases.
 const PLANES: [f32; 2] = [0.01, 2e4];
 
+/// Those of scenes with surfaces very near and far.
+const NARROW_TO_FAR: [f32; 2] = [0.02, 1e3];
+
 /// Those of scenes whose surfaces are no stacks.
 const NARROW: [f32; 2] = [0.1, 100.0];
 
@@ -385,6 +417,52 @@ fn even(n: usize, from: f32, to: f32, alpha: impl Fn(f32) -> f32) -> Vec<(f32, f
         (from + (to - from) * t, alpha(t))
     };
     (0..n).map(layer).collect()
+}
+
+/// Nine stacks of twenty layers at depths from 4 to 6, the farther ten of them so many times as far, and what lies apart.
+fn twenty(split: f32, apart: &[(f32, f32)]) -> Vec<Stack> {
+    let stack = |seed: u64| {
+        let mut random = Random::new(seed, &[]);
+        let mut layers: Vec<Fragment> = Vec::new();
+        for i in 0..20 {
+            let times = if i < 10 { 1.0 } else { split };
+            let depth = times * (4.0 + 0.1 * (i as f32 + 0.8 * random.unit()));
+            layers.push(Fragment::new(
+                depth,
+                random.between(0.03, 0.4),
+                random.color(),
+            ));
+        }
+        let far = apart
+            .iter()
+            .map(|&(depth, alpha)| Fragment::new(depth, alpha, [0.9, 0.8, 0.3]));
+        layers.extend(far);
+        Stack::new(&format!("stack {seed}"), layers)
+    };
+    (0..9).map(stack).collect()
+}
+
+/// Five meshes of four walls that lean in many ways, and what lies apart in the first of them: boxes around objects know nothing of the gap.
+fn one_mesh(name: &str, apart: &[(f32, f32)]) -> Trial {
+    let mut random = Random::new(17, &[]);
+    let mesh = |k: usize| {
+        let mut walls = Vec::new();
+        for i in 0..4 {
+            let depth = 4.0 + 0.1 * (5 * i + k) as f32;
+            let [l, r] = [(); 2].map(|()| depth + random.between(-0.3, 0.3));
+            let vertex = |(x, depth): (f32, f32), y: f32| Vec3::new(x, y, -depth);
+            walls.extend(rectangle([(-9.0, l), (9.0, r)], [-7.0, 7.0], vertex));
+        }
+        for &(depth, _) in apart.iter().filter(|_| k == 0) {
+            let side = 2.0 * depth;
+            let vertex = |x: f32, y: f32| Vec3::new(x, y, -depth);
+            walls.extend(rectangle([-side, side], [-side, side], vertex));
+        }
+        let (color, alpha) = (random.color(), random.between(0.1, 0.3));
+        Object::of_triangles("walls", &walls, Material::unlit(color, alpha))
+    };
+    let meshes = (0..5).map(mesh).collect();
+    Trial::rasterised(&format!("{name}, one mesh"), NARROW_TO_FAR, meshes)
 }
 
 /// Layers of which all together cover 0.95, drawn in an order that says nothing of their depths.

@@ -5,12 +5,13 @@
 //! own slab the nearest and the farthest layer are known, and up to eight layers of a pixel are. What lies between them is
 //! bounded by its mean depth (Markov's inequality), and only where between the bounds the truth lies is guessed: see [`Interior`].
 //!
-//! Slabs are cut where the layers are ([`Scale`]): a first pass sums the absorbance of eight bins of the frame's depth.
+//! Slabs are cut where the layers are ([`Scale`]): a first pass sums the absorbance of eight bins of the frame's depth, and finds the pixel's
+//! nearest and farthest depth.
 //!
 //! Three geometry passes: the bins, the sums and records, the colours. Records are levels of depth and opacity under MAX blending
 //! ([`ExtremeCode`]). The shader is `learned/slabs.wgsl`, with the file of a [`Layout`], such as `slabs_small.wgsl`.
 
-use super::{Point, anchored::composite_weighted, known::KnownFragment, point, points};
+use super::{Point, anchored::composite_weighted, known::KnownFragment, point};
 use crate::{
     absorbance::DepthWarp,
     fragment::Fragment,
@@ -28,9 +29,6 @@ const TOP: f64 = 255.0;
 /// Bins of the frame's depth, at most.
 pub const MAX_BINS: usize = 16;
 
-/// What is seen of a bin that has fragments, at least: where little light passes, order still counts a little.
-const LEAST_SEEN: f64 = 1.0 / 256.0;
-
 /// A slab: where it ends, and what is kept of it beside its absorbance.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Kept {
@@ -45,7 +43,7 @@ pub struct Kept {
 /// The scale of depth that is cut into slabs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Extent {
-    /// The absorbances of so many bins of the frame's depth, in 8 bits each ([`Scale::from_bins`]): a geometry pass more.
+    /// The absorbances of so many bins of the frame's depth and the pixel's two ends, in 8 bits each ([`Scale::from_bins`]): a geometry pass more.
     Bins(usize),
     /// From the pixel's nearest fragment to its farthest, in 8 bits for either end: a geometry pass more.
     Ends,
@@ -100,24 +98,24 @@ impl Layout {
 }
 
 impl Design {
-    /// 36 bytes a pixel, colours included: three targets beside the bins.
+    /// 38 bytes a pixel, colours included: three targets beside the bins.
     pub const SMALL: Self = Self {
-        slabs: &[until(0.525, true), until(0.745, false), until(1.0, false)],
+        slabs: &[until(0.49, true), until(0.77, false), until(1.0, false)],
         records: FARTHEST_CODE,
         extent: Extent::Bins(8),
         apart: false,
     };
-    /// 40 bytes a pixel, three targets beside the bins.
+    /// 42 bytes a pixel, three targets beside the bins.
     pub const MEDIUM: Self = Self {
-        slabs: &[until(0.5, true), until(0.78, true), until(1.0, true)],
+        slabs: &[until(0.475, true), until(0.81, true), until(1.0, true)],
         ..Self::SMALL
     };
-    /// 48 bytes a pixel, four targets beside the bins: as much as one pass of plain WebGPU writes.
+    /// 50 bytes a pixel, four targets beside the bins: as much as one pass of plain WebGPU writes.
     pub const LARGE: Self = Self {
         slabs: &[
             until(0.34, true),
-            until(0.63, true),
-            until(0.8, true),
+            until(0.68, true),
+            until(0.87, true),
             until(1.0, true),
         ],
         ..Self::SMALL
@@ -138,7 +136,7 @@ impl Design {
         let scale = match self.extent {
             Extent::Frame => 0,
             Extent::Ends | Extent::Given(_) => 2,
-            Extent::Bins(bins) => bins as u32,
+            Extent::Bins(bins) => bins as u32 + 2,
         };
         scale + 2 * channels + 8 * (1 + u32::from(self.apart))
     }
@@ -183,39 +181,36 @@ impl Scale {
         }
     }
 
-    /// From the nearest to the farthest of a pixel's fragments, rounded away from each other to levels, and never empty.
+    /// From the nearest to the farthest of a pixel's fragments.
     pub fn from_ends(zetas: impl IntoIterator<Item = f64>) -> Self {
-        let none = (TOP, 0.0f64);
-        let (low, high) = zetas.into_iter().fold(none, |(low, high), zeta| {
-            let level = TOP * (zeta * 0.5 + 0.5);
-            (low.min(level.floor()), high.max(level.ceil()))
-        });
-        let [from, to] = [low, high.max(low + 1.0)].map(|level| 2.0 * level / TOP - 1.0);
-        Self::linear(from, to)
+        let [low, high] = ends_of(zetas);
+        Self::linear(zeta_of(low), zeta_of(high.max(low + 1.0)))
     }
 
-    /// Of the absorbances of bins of the frame's depth, nearest first. Each bin takes as much of the scale as the root of what is seen of it; an
-    /// empty one takes nothing. Where all are empty, the scale is the frame's.
-    pub fn from_bins(absorbances: &[f64]) -> Self {
+    /// Of the absorbances of bins of the frame's depth, nearest first, and the levels of the pixel's two ends. Between them each bin takes as much
+    /// of the scale as its length times the root of what is seen of it; an empty one takes nothing. Where all are empty, the scale is the frame's.
+    pub fn from_bins(absorbances: &[f64], [low, high]: [f64; 2]) -> Self {
         let bins = absorbances.len().min(MAX_BINS);
+        let [from, to] = [low, high.max(low + 1.0)].map(zeta_of);
         let (mut front, mut passed) = (0.0f64, 0.0);
         let mut scale = Self {
             last: bins,
             root: false,
             ..Self::WHOLE
         };
+        let edge = |k: usize| (2.0 * k as f64 / bins as f64 - 1.0).clamp(from, to);
         for (k, &b) in absorbances.iter().take(bins).enumerate() {
-            scale.knots[k] = [2.0 * k as f64 / bins as f64 - 1.0, passed];
+            scale.knots[k] = [edge(k), passed];
             if b > 0.0 {
                 let seen = (-front).exp() - (-front - b).exp();
-                passed += seen.max(LEAST_SEEN).sqrt();
+                passed += seen.sqrt() * (edge(k + 1) - edge(k));
             }
             front += b;
         }
         if passed <= 0.0 {
             return Self::WHOLE;
         }
-        scale.knots[bins] = [1.0, passed];
+        scale.knots[bins] = [to, passed];
         scale.knots.iter_mut().for_each(|knot| knot[1] /= passed);
         scale
     }
@@ -226,23 +221,42 @@ impl Scale {
         let above = knots.iter().position(|knot| knot[0] >= zeta);
         let k = above.unwrap_or(self.last).max(1);
         let ([z0, s0], [z1, s1]) = (knots[k - 1], knots[k]);
-        let place = s0 + (s1 - s0) * ((zeta - z0) / (z1 - z0)).clamp(0.0, 1.0);
+        // The pixel's ends may leave bins no length.
+        let length = (z1 - z0).max(f64::MIN_POSITIVE);
+        let place = s0 + (s1 - s0) * ((zeta - z0) / length).clamp(0.0, 1.0);
         if self.root { place.sqrt() } else { place }
     }
 }
 
-/// Levels of 8 bits that an absorbance of 1 is.
-pub const BIN_LEVELS: f64 = 32.0;
+/// The levels of the nearest and the farthest of a pixel's depths, rounded away from each other, of 0 … 255.
+pub fn ends_of(zetas: impl IntoIterator<Item = f64>) -> [f64; 2] {
+    let none = [TOP, 0.0f64];
+    zetas.into_iter().fold(none, |[low, high], zeta| {
+        let level = TOP * (zeta * 0.5 + 0.5);
+        [low.min(level.floor()), high.max(level.ceil())]
+    })
+}
 
-/// What 8-bit targets hold of so many bins of a pixel's depth, 0 … 255: whole levels, so that no order of adding changes a sum.
+fn zeta_of(level: f64) -> f64 {
+    2.0 * level / TOP - 1.0
+}
+
+/// Levels of 8 bits that an absorbance of 1 is.
+pub const BIN_LEVELS: f64 = 64.0;
+
+/// What 8-bit targets hold of so many bins of a pixel's depth, 0 … 255. A fragment is shared between the two bins whose middles it lies
+/// between, so that little changes as it moves from one to the other, and in whole levels, so that no order of adding changes a sum.
 pub fn bins_of(fragments: &[Point], bins: usize) -> Vec<f64> {
     let mut all = vec![0.0; bins];
     for &(b, zeta, _) in fragments {
-        let place = (0.5 + 0.5 * zeta) * bins as f64;
-        let bin = (place.max(0.0) as usize).min(bins - 1);
+        let place = (0.5 + 0.5 * zeta) * bins as f64 - 0.5;
+        let place = place.clamp(0.0, bins as f64 - 1.0);
         // At least one: a bin with any fragment is not empty.
         let level = (BIN_LEVELS * b + 0.5).floor().max(1.0);
-        all[bin] = (all[bin] + level).min(TOP);
+        for (sum, k) in all.iter_mut().zip(0u8..) {
+            let share = (1.0 - (place - f64::from(k)).abs()).max(0.0);
+            *sum = (*sum + (level * share + 0.5).floor()).min(TOP);
+        }
     }
     all
 }
@@ -290,7 +304,7 @@ impl Slabs {
                 Extent::Bins(bins) => {
                     let levels = bins_of(fragments, bins).into_iter();
                     let absorbances: Vec<f64> = levels.map(|l| l / BIN_LEVELS).collect();
-                    Scale::from_bins(&absorbances)
+                    Scale::from_bins(&absorbances, ends_of(fragments.iter().map(|f| f.1)))
                 }
                 Extent::Ends => Scale::from_ends(fragments.iter().map(|f| f.1)),
                 Extent::Frame => Scale::WHOLE,
@@ -426,6 +440,12 @@ impl Slabs {
     }
 }
 
+/// Fragments that are given as (linear depth, α), by their depths without gaps.
+pub fn points(fragments: &[(f32, f32)], warp: &DepthWarp) -> Vec<Point> {
+    let to_point = |&(depth, alpha): &(f32, f32)| point(alpha, warp.cut(depth.into()));
+    fragments.iter().map(to_point).collect()
+}
+
 /// What is known of each of a pixel's fragments, given as (linear depth, α), in the order given.
 pub fn known_fragments(
     fragments: &[(f32, f32)],
@@ -452,7 +472,7 @@ pub fn composite(
     design: Design,
     guess: impl Fn(&Interior) -> f64,
 ) -> [f32; 3] {
-    let zeta = |depth: f32| warp.apply(depth.into());
+    let zeta = |depth: f32| warp.cut(depth.into());
     let exact = SumPrecision::Exact;
     composite_on(fragments, background, zeta, design, exact, guess)
 }

@@ -6,8 +6,7 @@ use peelnet_core::{
     fragment::Fragment,
     methods::{
         known::KnownFragment,
-        points,
-        slabs::{self, Design, Extent, Interior, Layout, Slabs, bins_of},
+        slabs::{self, Design, Extent, Interior, Layout, Slabs, bins_of, ends_of, points},
     },
 };
 
@@ -116,7 +115,13 @@ impl NetworkInputs for SlabInputs {
             let bins = bins_of(&points, bins);
             let bins: Vec<f32> = bins.into_iter().map(|x| x as f32 / 255.0).collect();
             let (front, back) = bins.split_at(4);
-            targets.extend([("bins_front", front.to_vec()), ("bins_back", back.to_vec())]);
+            let [low, high] = ends_of(points.iter().map(|f| f.1)).map(|level| level as f32);
+            let ends = vec![(255.0 - low) / 255.0, high / 255.0];
+            targets.extend([
+                ("bins_front", front.to_vec()),
+                ("bins_back", back.to_vec()),
+                ("range", ends),
+            ]);
         }
         match self.layout() {
             Layout::Small => {
@@ -160,11 +165,18 @@ const fn modules(statistics: &'static str) -> [&'static str; 7] {
 static SMALL: Surroundings = Surroundings {
     parameters: "between: PeelnetBetween",
     modules: &modules("learned::slabs_small"),
-    before: ZETA,
+    before: ZETA_WITHOUT_GAPS,
     passes: &passes(
         &[ABSORBANCES, NEAREST, sum("firsts", "rg16float", "s.firsts")],
-        &["bins_front", "bins_back", "absorbances", "nearest", "firsts"],
-        "peelnet_fragment(alpha, peelnet_in_pixel(zeta, bins_front, bins_back), absorbances, nearest, firsts).x",
+        &[
+            "bins_front",
+            "bins_back",
+            "range",
+            "absorbances",
+            "nearest",
+            "firsts",
+        ],
+        "peelnet_fragment(alpha, peelnet_in_pixel(zeta, bins_front, bins_back, range), absorbances, nearest, firsts).x",
     ),
     resolve: "peelnet_resolve(sums, absorbances.x + absorbances.y + absorbances.z, background)",
 };
@@ -177,8 +189,15 @@ static MEDIUM: Surroundings = Surroundings {
             most_and_sum("nearest", "s.nearest"),
             most_and_sum("farthest", "s.farthest"),
         ],
-        &["bins_front", "bins_back", "absorbances", "nearest", "farthest"],
-        "peelnet_fragment(alpha, peelnet_in_pixel(zeta, bins_front, bins_back), absorbances, nearest, farthest).x",
+        &[
+            "bins_front",
+            "bins_back",
+            "range",
+            "absorbances",
+            "nearest",
+            "farthest",
+        ],
+        "peelnet_fragment(alpha, peelnet_in_pixel(zeta, bins_front, bins_back, range), absorbances, nearest, farthest).x",
     ),
     ..SMALL
 };
@@ -192,8 +211,16 @@ static LARGE: Surroundings = Surroundings {
             most("farthest", HALF, LEAST, "s.farthest"),
             sum("firsts", HALF, "s.firsts"),
         ],
-        &["bins_front", "bins_back", "absorbances", "nearest", "farthest", "firsts"],
-        "peelnet_fragment(alpha, peelnet_in_pixel(zeta, bins_front, bins_back), absorbances, nearest, farthest, firsts).x",
+        &[
+            "bins_front",
+            "bins_back",
+            "range",
+            "absorbances",
+            "nearest",
+            "farthest",
+            "firsts",
+        ],
+        "peelnet_fragment(alpha, peelnet_in_pixel(zeta, bins_front, bins_back, range), absorbances, nearest, farthest, firsts).x",
     ),
     resolve: "peelnet_resolve(sums, absorbances.x + absorbances.y + absorbances.z + absorbances.w, background)",
     ..SMALL
@@ -207,12 +234,20 @@ const fn passes(
     const BINS: &[Target] = &[
         sum("bins_front", "rgba8unorm", "bins.front"),
         sum("bins_back", "rgba8unorm", "bins.back"),
+        most("range", "rg8unorm", 0.0, "bins.range"),
     ];
     let bins = value("bins", ValueKind::Bins, "peelnet_bins(alpha, zeta)");
-    let in_pixel = statistics("peelnet_statistics(alpha, peelnet_in_pixel(zeta, bins_front, bins_back))");
+    let in_pixel = statistics(
+        "peelnet_statistics(alpha, peelnet_in_pixel(zeta, bins_front, bins_back, range))",
+    );
     [
         pass("range", &[], bins, BINS),
-        pass("statistics", &["bins_front", "bins_back"], in_pixel, targets),
+        pass(
+            "statistics",
+            &["bins_front", "bins_back", "range"],
+            in_pixel,
+            targets,
+        ),
         pass("weights", reads, weight(call), SUMS),
     ]
 }

@@ -107,10 +107,21 @@ pub(super) const WEIGHTED: &str = "vec4f(alpha * rgb, alpha) * w";
 
 pub(super) const SUMS: &[Target] = &[sum("sums", HALF, WEIGHTED)];
 
-pub(super) const ZETA: &str = "zeta = peelnet_zeta(z, near, far): z is the distance along the view axis, near and far the range of z that the \
+macro_rules! zeta {
+    () => {
+        "zeta = peelnet_zeta(z, near, far): z is the distance along the view axis, near and far the range of z that the \
     bounding boxes of the transparent objects in view span, clipped to the camera's. A tight range matters more than anything else \
     you choose. Compute zeta with this function in all passes. Its range is the same for the whole frame: \
-    peelnet_zeta_in(z, peelnet_range(near, far)) is the same value, and the range may be passed in.";
+    peelnet_zeta_in(z, peelnet_range(near, far)) is the same value, and the range may be passed in."
+    };
+}
+
+pub(super) const ZETA: &str = zeta!();
+
+pub(super) const ZETA_WITHOUT_GAPS: &str = concat!(
+    zeta!(),
+    " Where boxes show that nothing lies between two depths, use peelnet_cut(zeta, gaps) for zeta in all passes: it leaves up to two such gaps out."
+);
 
 pub(super) const fn target(
     name: &'static str,

@@ -80,6 +80,13 @@ pub struct SceneBuffers {
     pub tinted: bool,
 }
 
+fn corners_of([lo, hi]: [glam::Vec3; 2]) -> impl Iterator<Item = glam::Vec3> {
+    (0..8).map(move |i| {
+        let pick = |bit: u32, k: usize| if i >> bit & 1 == 0 { lo[k] } else { hi[k] };
+        glam::Vec3::new(pick(0, 0), pick(1, 1), pick(2, 2))
+    })
+}
+
 impl SceneBuffers {
     /// Transforms the scene to world space and uploads it.
     ///
@@ -276,6 +283,7 @@ impl SceneBuffers {
             warp_scale: warp.scale as f32,
             window_depth_at_infinity: camera.far / (camera.far - camera.near),
             pad: [0; 2],
+            gaps: [0, 1, 2, 3].map(|k| warp.gaps[k / 2][k % 2] as f32),
         };
         recorder.write(&self.camera, &[uniform]);
     }
@@ -284,12 +292,19 @@ impl SceneBuffers {
     /// range is what moments get their precision from.
     pub fn depth_warp(&self, camera: &Camera) -> DepthWarp {
         let view = camera.view_from_world();
-        let (near, far) = self
-            .corners()
-            .map(|p| (-view.transform_point3(p).z).clamp(camera.near, camera.far))
-            .fold((f32::INFINITY, 0.0f32), |(a, b), z| (a.min(z), b.max(z)));
+        let depth = |p| (-view.transform_point3(p).z).clamp(camera.near, camera.far);
+        let boxes = self.transparent_parts().filter_map(|part| part.bounds);
+        let spans = boxes.map(|bounds| {
+            let depths = corners_of(bounds).map(depth);
+            depths.fold([f32::INFINITY, 0.0], |[a, b], z| [a.min(z), b.max(z)])
+        });
+        let spans: Vec<[f32; 2]> = spans.collect();
+        let none = [f32::INFINITY, 0.0];
+        let [near, far] =
+            (spans.iter()).fold(none, |[a, b], span| [a.min(span[0]), b.max(span[1])]);
         if near <= far {
-            DepthWarp::new(near.into(), far.into())
+            let warp = DepthWarp::new(near.into(), far.into());
+            warp.with_spans(spans.into_iter().map(|span| span.map(f64::from)))
         } else {
             DepthWarp::new(camera.near.into(), camera.far.into())
         }
@@ -298,12 +313,7 @@ impl SceneBuffers {
     /// The corners of the boxes around transparent parts, in world space.
     fn corners(&self) -> impl Iterator<Item = glam::Vec3> {
         let boxes = self.transparent_parts().filter_map(|part| part.bounds);
-        boxes.flat_map(|[lo, hi]| {
-            (0..8).map(move |i| {
-                let pick = |bit: u32, k: usize| if i >> bit & 1 == 0 { lo[k] } else { hi[k] };
-                glam::Vec3::new(pick(0, 0), pick(1, 1), pick(2, 2))
-            })
-        })
+        boxes.flat_map(corners_of)
     }
 
     /// A rectangle of pixels (x, y, width, height) outside which no transparent surface is seen: around the boxes of all of them, and the

@@ -27,6 +27,8 @@ pub(crate) struct CameraUniform {
     /// far / (far − near): window depth is this less a multiple of 1 / z.
     pub window_depth_at_infinity: f32,
     pub pad: [u32; 2],
+    /// Ends of two stretches of that range without transparent objects.
+    pub gaps: [f32; 4],
 }
 
 /// `Material` in `scene/material.wgsl`.

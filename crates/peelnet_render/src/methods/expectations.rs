@@ -99,6 +99,8 @@ pub struct Guarantees {
     pub root: Option<u32>,
     /// Its estimate of transmittance is held to a fraction of the limits that published methods are held to.
     pub close_estimate: bool,
+    /// A surface far from all others leaves them as close to exact as they are without it.
+    pub apart: bool,
     /// How much of its own absorbance a fragment counts as in front of it, given exact statistics.
     pub own_share: f64,
     /// Fragments are rounded before they are composited, by its CPU reference too.
@@ -124,6 +126,7 @@ impl Guarantees {
         statistics: Precision::Full,
         root: None,
         close_estimate: false,
+        apart: false,
         own_share: 0.0,
         rounds_fragments: false,
         own_weight: false,
@@ -170,6 +173,9 @@ pub enum Property {
     Opaque,
     /// The transmittance that the weights stand for is right. Value: the largest error of any fragment.
     Transmittance,
+    /// The image is close to the exact one where a surface or two lie far from all others. Value: the root of the mean squared error, linear
+    /// light.
+    Apart,
     /// Between two frames of a movement pixels jump by no more than in the exact image. Value: the mean excess, linear light.
     Steady,
     /// The network's output in half floats is that in 64 bits. Value: the difference.

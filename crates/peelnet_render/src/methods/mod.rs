@@ -177,9 +177,9 @@ mod tests {
             for (name, most, found) in [
                 ("anchored", 2, anchored(false)),
                 ("anchored, separate ends", 3, anchored(true)),
-                ("small slabs", 3, slabs(Design::SMALL)),
-                ("medium slabs", 3, slabs(Design::MEDIUM)),
-                ("large slabs", 3, slabs(Design::LARGE)),
+                ("small slabs", 2, slabs(Design::SMALL)),
+                ("medium slabs", 2, slabs(Design::MEDIUM)),
+                ("large slabs", 2, slabs(Design::LARGE)),
                 ("dfaoit", 2, dfaoit::composite(&f, C0, |_| [9.0; 3])),
                 ("kbuffer", 4, kbuffer(None)),
                 ("hybrid", 4, kbuffer(Some(Weight::Eq9))),

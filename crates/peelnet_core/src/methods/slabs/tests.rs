@@ -36,7 +36,8 @@ fn two_layers_of_each_slab_are_known() {
         let mut places = Vec::new();
         for slab in 0..design.slabs.len() {
             let [begin, end] = [design.begin(slab), design.slabs[slab].end];
-            let depth = |share: f64| begin + (end - begin) * share;
+            // The scale is the root of the depth.
+            let depth = |share: f64| (begin + (end - begin) * share).powi(2);
             places.push(depth(0.02 + 0.4 * f64::from(random.unit())));
             places.push(depth(0.55 + 0.4 * f64::from(random.unit())));
         }
@@ -58,7 +59,7 @@ fn layouts_are_found() {
         design.apart = true;
         assert_eq!(design.layout(), None);
     }
-    assert_eq!(Layout::ALL.map(|l| l.design().bytes()), [36, 40, 48]);
+    assert_eq!(Layout::ALL.map(|l| l.design().bytes()), [38, 42, 50]);
 }
 
 /// Two passes of a renderer may round a depth otherwise. What was recorded is recognised all the same, but at a border between two slabs.
@@ -99,6 +100,10 @@ fn bounds_hold() {
     const MOST: f32 = 0.6;
     let level = (1.0 + absorbance(MOST)).powi(2) / f64::from(FARTHEST_CODE.alphas - 1);
     let limit = 4.0 * 0.5 * level;
+    let design = Design {
+        extent: Extent::Given(Scale::from_bins(&[1.0], [0.0, 255.0])),
+        ..Design::LARGE
+    };
     let mut random = Random::new(7, &[]);
     let (mut guessed, mut width, mut unbounded) = (0, 0.0, 0.0);
     for _ in 0..300 {
@@ -109,7 +114,7 @@ fn bounds_hold() {
         let f = at(&places, MOST, &mut random);
         let list = points_of(&f);
         let mut front = 0.0f64;
-        let all = known_fragments(&list, &warp(), Design::LARGE, SumPrecision::Exact);
+        let all = known_fragments(&list, &warp(), design, SumPrecision::Exact);
         for (f, fragment) in f.iter().zip(all) {
             let [least, most] = [0.0, 1.0].map(|guess| -fragment.weight(|_| guess).ln());
             let holds = least - limit <= front && front <= most + limit;
@@ -129,7 +134,8 @@ fn bounds_hold() {
 fn bins_share_the_scale_by_what_is_seen_of_them() {
     let mut bins = [0.0; 8];
     (bins[2], bins[5]) = (-0.75f64.ln(), 40.0);
-    let scale = Scale::from_bins(&bins);
+    let scale = Scale::from_bins(&bins, [0.0, 255.0]);
+    // Three quarters are seen behind the first, and nothing behind both.
     let [of_first, of_second] = [0.25f64.sqrt(), 0.75f64.sqrt()];
     let first = of_first / (of_first + of_second);
     for (bin, expected) in [
@@ -145,7 +151,21 @@ fn bins_share_the_scale_by_what_is_seen_of_them() {
         let off = scale.place(bin / 4.0 - 1.0) - expected;
         assert!(off.abs() < 1e-12, "{bin} is off by {off}");
     }
-    assert_eq!(Scale::from_bins(&[0.0; 8]), Scale::WHOLE);
+    assert_eq!(Scale::from_bins(&[0.0; 8], [0.0, 255.0]), Scale::WHOLE);
+}
+
+/// Where all fragments lie in one bin, its part between them is the scale, as if there were no bins.
+#[test]
+fn ends_cut_bins() {
+    let mut bins = [0.0; 8];
+    bins[3] = 1.0;
+    let [low, high] = [100.0, 120.0];
+    let scale = Scale::from_bins(&bins, [low, high]);
+    for share in [0.0, 0.25, 0.5, 1.0] {
+        let off = scale.place(zeta_of(low + share * (high - low))) - share;
+        assert!(off.abs() < 1e-12, "{share} is off by {off}");
+    }
+    assert_eq!([scale.place(-1.0), scale.place(1.0)], [0.0, 1.0]);
 }
 
 /// Layers in two bins far from each other are cut as if there were nothing between them, and a layer apart changes little.
@@ -153,7 +173,9 @@ fn bins_share_the_scale_by_what_is_seen_of_them() {
 fn a_layer_apart_leaves_the_others_their_slabs() {
     let mut random = Random::new(5, &[]);
     for _ in 0..200 {
-        let places: Vec<_> = (0..12).map(|_| f64::from(random.between(0.8, 1.0))).collect();
+        let places: Vec<_> = (0..12)
+            .map(|_| f64::from(random.between(0.8, 1.0)))
+            .collect();
         let mut f = at(&places, 0.4, &mut random);
         f.push(Fragment::new(0.5, 0.15, [1.0; 3]));
         let f = over::sorted(&f);

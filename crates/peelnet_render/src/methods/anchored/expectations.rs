@@ -22,8 +22,10 @@ pub(super) const ANCHORED: Expectations = Expectations {
 };
 
 /// Crossing and many layers, where what is left of a sum without the fragment's own share and the ends is a small part of it.
-const UNSETTLED: KnownFailure =
-    KnownFailure::unsettled(Property::Order, "high-alpha intersecting moving-camera");
+const UNSETTLED: KnownFailure = KnownFailure::unsettled(
+    Property::Order,
+    "apart high-alpha intersecting moving-camera",
+);
 
 const BEHIND_COINCIDENT: KnownFailure = KnownFailure::new(
     Property::Transmittance,

@@ -22,16 +22,15 @@ pub(super) const METHOD: Expectations = Expectations {
     }),
     estimate: Some(learned_transmittances),
     known_failures: &[
-        KnownFailure::swallowed("alpha-tiny deep near-overflow"),
+        KnownFailure::swallowed("alpha-tiny deep"),
         KnownFailure::reordered("deep"),
         KnownFailure::BLIND,
         KnownFailure::new(
             Property::Scale,
-            "alpha-near-one alpha-one alpha-zero coplanar deep emissive far grazing high-alpha intersecting \
-             moving-camera opaque-mix passing thin-slab two-layers wide-range",
+            "apart alpha-near-one alpha-one coplanar deep far grazing high-alpha intersecting moving-camera passing thin-slab two-layers wide-range",
             IN_SCENE_UNITS,
         ),
-        KnownFailure::new(Property::Scale, "alpha-tiny near-overflow", IN_SCENE_UNITS)
+        KnownFailure::new(Property::Scale, "alpha-tiny", IN_SCENE_UNITS)
             .when(half_sums)
             .seen_on_llvmpipe(),
         KnownFailure::new(

@@ -64,7 +64,7 @@ pub(super) const SIX: Expectations = ESTIMATED.failing(&[
     KnownFailure::unsettled(Property::Transmittance, "isolated two-layers"),
     KnownFailure::unsettled(
         Property::Order,
-        "deep emissive grazing high-alpha intersecting moving-camera opaque-mix two-layers passing",
+        "apart deep emissive grazing high-alpha intersecting moving-camera opaque-mix two-layers passing",
     ),
     KnownFailure::new(
         Property::Order,
@@ -83,7 +83,7 @@ pub(super) const EIGHT: Expectations = ESTIMATED.failing(&[
     KnownFailure::unsettled(Property::Transmittance, "isolated two-layers"),
     KnownFailure::unsettled(
         Property::Order,
-        "alpha-near-one deep emissive far grazing high-alpha intersecting moving-camera near-overflow \
+        "apart alpha-near-one deep emissive far grazing high-alpha intersecting moving-camera near-overflow \
          opaque-mix passing two-layers",
     ),
 ]);
@@ -111,5 +111,7 @@ pub(super) const TRIGONOMETRIC: Expectations = ESTIMATED.failing(&[
     )
     .seen_on_llvmpipe(),
     KnownFailure::unsettled(Property::Order, "deep emissive high-alpha passing"),
+    KnownFailure::unsettled(Property::Order, "apart")
+        .when(|s| s.number() == 3 && half_statistics(s)),
     KnownFailure::reordered("near-overflow").when(|s| half_sums(s) && !half_statistics(s)),
 ]);

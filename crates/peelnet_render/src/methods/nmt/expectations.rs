@@ -23,12 +23,10 @@ pub(super) const METHOD: Expectations = Expectations {
             "the network's own error; it reads the same moments (Tsopouridis et al. 2024)",
         ),
         KnownFailure::new(
-            Property::Scale,
-            "thin-slab",
-            "it divides depths by a pixel's own range of them, here a few roundings (Tsopouridis et al. 2024)",
-        )
-        .when(|spec| !half_sums(spec))
-        .seen_on_llvmpipe(),
+            Property::Half,
+            "half-float",
+            "roundings of the first layers add up to more than the last layer's own",
+        ),
         KnownFailure::new(
             Property::Transmittance,
             "two-layers coplanar",

@@ -10,7 +10,10 @@ fn is_of_pixel(spec: &MethodSpec) -> bool {
 }
 
 pub(super) const SLABS: Expectations = Expectations {
-    guarantees: |_| Guarantees::TINTED,
+    guarantees: |spec| Guarantees {
+        apart: is_of_pixel(spec),
+        ..Guarantees::TINTED
+    },
     reference: Some(reference::composite),
     estimate: Some(reference::transmittances),
     ..Expectations::DEFAULT
@@ -21,6 +24,13 @@ const BORDERS: KnownFailure = KnownFailure::new(
     "moving-camera",
     "what lies between a slab's known ends is guessed, and where a layer passes a slab's border it is another guess, or none",
 );
+
+const ROUNDED_OTHERWISE: KnownFailure = KnownFailure::new(
+    Property::Scale,
+    "thin-slab",
+    "depths are rounded otherwise, and of layers that differ by a few roundings another is the nearest",
+)
+.seen_on_llvmpipe();
 
 const COINCIDENT: KnownFailure = KnownFailure::new(
     Property::Transmittance,
@@ -37,10 +47,13 @@ pub(super) const METHOD: Expectations = SLABS.failing(&[
 
 pub(super) const SMALL: Expectations = SLABS.failing(&[
     KnownFailure::swallowed("deep"),
-    BORDERS.when(is_of_pixel),
-    COINCIDENT,
+    ROUNDED_OTHERWISE.when(is_of_pixel),
 ]);
 
 pub(super) const MEDIUM: Expectations = SLABS.failing(&[KnownFailure::swallowed("deep")]);
 
-pub(super) const LARGE: Expectations = SLABS.failing(&[KnownFailure::swallowed("deep")]);
+pub(super) const LARGE: Expectations = SLABS.failing(&[
+    KnownFailure::swallowed("deep"),
+    KnownFailure::swallowed("alpha-tiny").when(is_of_pixel),
+    BORDERS.when(is_of_pixel),
+]);

@@ -10,13 +10,13 @@ use peelnet_model::inputs::{SlabInputs, slab_surroundings};
 
 const KEEP: Parameter = Parameter::words(
     "keep",
-    "large (default, 48 bytes a pixel): four slabs; medium (40 bytes): three; small (36 bytes): three, and the farthest fragment of the nearest alone",
+    "large (default, 50 bytes a pixel): four slabs; medium (42 bytes): three; small (38 bytes): three, and the farthest fragment of the nearest alone",
     &["large", "medium", "small"],
 );
 
 const RANGE: Parameter = Parameter::words(
     "range",
-    "what slabs are cut by: the absorbances of eight bins of depth in the pixel (pixel, by default), found by a geometry pass of its own; depth from where the pixel's ray enters the first box around a transparent part to where it leaves the last (boxes), found by a pass over boxes; or depth in the frame (frame), with a pass less and several times the error",
+    "what slabs are cut by: the absorbances of eight bins of depth between the pixel's ends (pixel, by default), found by a geometry pass of its own; depth from where the pixel's ray enters the first box around a transparent part to where it leaves the last (boxes), found by a pass over boxes; or depth in the frame (frame), with a pass less and several times the error",
     &["pixel", "boxes", "frame"],
 );
 
@@ -51,7 +51,7 @@ pub(super) const SMALL: Method = Method {
     expectations: expectations::SMALL,
     ..slabs(
         "deep-small",
-        "known layers of three slabs and a learned guess between them, 36 bytes a pixel",
+        "known layers of three slabs and a learned guess between them, 38 bytes a pixel",
     )
 };
 
@@ -60,7 +60,7 @@ pub(super) const MEDIUM: Method = Method {
     expectations: expectations::MEDIUM,
     ..slabs(
         "deep-medium",
-        "the same in 40 bytes a pixel: the one to ship",
+        "the same in 42 bytes a pixel: the one to ship",
     )
 };
 
@@ -69,7 +69,7 @@ pub(super) const LARGE: Method = Method {
     expectations: expectations::LARGE,
     ..slabs(
         "deep-large",
-        "the same of four slabs, 48 bytes a pixel: the most accurate",
+        "the same of four slabs, 50 bytes a pixel: the most accurate",
     )
 };
 
@@ -127,16 +127,10 @@ fn passes(p: &mut Passes<'_>) {
     let features = || own_layout.into_iter().chain(source);
     let sums = p.target(SUMS);
     let kept = p.targets(statistics(layout));
-    let found = if framed {
-        vec![]
-    } else if boxes {
-        vec![Target::half("range", 2, Blend::MaxBytes)]
-    } else {
-        let bins = ["bins_front", "bins_back"];
-        let of_bins = |name| Target::half(name, 4, Blend::AddBytes);
-        bins.map(of_bins).into()
-    };
-    let found = p.targets(found);
+    let bins = ["bins_front", "bins_back"].map(|name| Target::half(name, 4, Blend::AddBytes));
+    let bins = bins.into_iter().filter(|_| source.is_none());
+    let range = (!framed).then_some(Target::half("range", 2, Blend::MaxBytes));
+    let found = p.targets(bins.chain(range));
     if boxes {
         let pass = p.geometry("methods::slabs::boxes", Needs::DEPTH).boxes();
         pass.label("range").writes(found.iter().copied());

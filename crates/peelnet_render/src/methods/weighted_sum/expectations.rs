@@ -8,10 +8,10 @@ pub(super) const METHOD: Expectations = Expectations {
     },
     reference: Some(|_, p| Some(reference::composite(p.fragments, p.background))),
     known_failures: &[
-        KnownFailure::reordered("deep near-overflow"),
+        KnownFailure::reordered("deep near-overflow apart"),
         KnownFailure::new(
             Property::Background,
-            "alpha-zero alpha-tiny alpha-one alpha-near-one high-alpha deep near-overflow far wide-range \
+            "apart alpha-zero alpha-tiny alpha-one alpha-near-one high-alpha deep near-overflow far wide-range \
              coplanar thin-slab two-layers intersecting grazing emissive opaque-mix moving-camera passing",
             "covers by the sum of opacities, which may exceed 1 (Meshkin 2007)",
         ),
