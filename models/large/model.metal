@@ -3,23 +3,23 @@
 // Metal 2.4. No Metal compiler was at hand: this text was translated from WGSL that was compiled and run, and has not been compiled itself.
 // Network: 9-12-1 (Relu hidden, Sigmoid last), 133 parameters, 120 multiply-adds. Recipe large, seed 1, 80 epochs.
 // Answers: transmittance of what lies between a slab's known ends, exp(-absorbance * share) with absorbance = root_absorbance^2 and share in share_low .. share_high.
-// Input 0: root_absorbance (root of the absorbance between the slab's ends), 0.0 .. 19.254885 in training.
+// Input 0: root_absorbance (root of the absorbance between the slab's ends), 0.0 .. 21.107838 in training.
 // Input 1: place_fraction (of the way between the slab's ends), 0.0 .. 1.0 in training.
 // Input 2: mean_fraction (of the way between the slab's ends), 0.0 .. 1.0 in training.
 // Input 3: share_low (of the absorbance between the slab's ends), 0.0 .. 1.0 in training.
 // Input 4: share_high (of the absorbance between the slab's ends), 0.0 .. 1.0 in training.
 // Input 5: root_own (root of the fragment's absorbance), 0.031630483 .. 2.4013393 in training.
 // Input 6: half_extent (half of the way between the slab's ends, in slabs), 0.00052083336 .. 1.0 in training.
-// Input 7: of_own (absorbance between the ends, of that and the fragment's), 0.0 .. 0.99999064 in training.
+// Input 7: of_own (absorbance between the ends, of that and the fragment's), 0.0 .. 0.9999906 in training.
 // Input 8: of_nearest (absorbance between the ends, of that and the nearer end's), 0.0 .. 1.0 in training.
 // Trained on 21565798 rows of boxes, cups, foliage, intersecting, opaque-mix, panes, sixteen-025, sixteen-050, sixteen-075, sixteen-085, sixteen-random-alpha, sixteen-random-color, smoke-100, smoke-30, synthetic (dataset f0e6c4a7cca08d560f99a5be9cbd1514bf8be352632a347602bf08363695fd29+e22e844788a454658277e87e23685b5ffa00e3ad2d48cb833cc53130eaf4d8b7).
-// Loss: training 0.000133, validation 0.000122, test 0.000123.
-// Held-out error, mean |T - T_exact|: boxes-held 0.00174, cups-held 0.00171, foliage-held 0.00056, panes-held 0.00012, sixteen-held 0.00027, smoke-held 0.00405.
+// Loss: training 0.000105, validation 0.000098, test 0.000103.
+// Held-out error, mean |T - T_exact|: boxes-held 0.00160, cups-held 0.00136, foliage-held 0.00038, panes-held 0.00009, sixteen-held 0.00023, smoke-held 0.00333.
 //
 // Self-tests, to some roundings of 32 bits; weights and colours also to those of 16-bit targets.
-// peelnet_weight(0.43794915, 0.67085797, 0.16887921, 0.7373583, 0.19208878, 0.1129206, 0.12900263, 0.4358352, 0.7663156) = 0.87601495
-// peelnet_weight(0.26952705, 0.13589168, 0.26682287, 0.7078695, 0.5534122, 0.8413221, 0.6951227, 0.3716183, 0.9624051) = 0.9499678
-// peelnet_weight(2.451425, 0.2162394, 0.7240006, 0.37958002, 0.26558614, 1.9607327, 0.5804378, 0.9097895, 0.04841405) = 0.11457037
+// peelnet_weight(0.2954644, 0.13589168, 0.26682287, 0.7078695, 0.5534122, 0.8413221, 0.6951227, 0.3716183, 0.9624051) = 0.945929
+// peelnet_weight(2.6873326, 0.2162394, 0.7240006, 0.37958002, 0.26558614, 1.9607327, 0.5804378, 0.90978944, 0.04841405) = 0.065241195
+// peelnet_weight(1.176659, 0.55773175, 0.41844797, 0.7173642, 0.44993675, 1.6151378, 0.48404527, 0.3332267, 0.6325573) = 0.41662478
 // Four fragments of a pixel, near 1.0, far 8.0, background 0.25, 0.5, 0.75:
 //    z 1.0, alpha 0.5, rgb 1.0, 0.0, 0.0: zeta -1.0, weight 1.0
 //    z 2.0, alpha 0.5, rgb 0.0, 1.0, 0.0: zeta -0.33333334, weight 0.5
@@ -27,23 +27,25 @@
 //    z 8.0, alpha 0.9, rgb 1.0, 1.0, 1.0: zeta 1.0, weight 0.125
 //    target bins_front: 0.17254902, 0.0, 0.14509805, 0.02745098
 //    target bins_back: 0.02745098, 0.14509805, 0.0, 0.5764706
+//    target range: 1.0, 1.0
 //    target absorbances: 0.6931472, 0.6931472, 0.6931472, 2.302585
-//    target nearest: 64928.0, 0.26879883, 0.005054474, -64768.0
-//    target farthest: -65088.0, -0.27001953, -0.0050735474, 65248.0
-//    target firsts: -0.6931472, -0.27881977, -0.14537315, 2.302585
+//    target nearest: 64928.0, 0.0072517395, 0.033599854, -64768.0
+//    target farthest: -65088.0, -0.007270813, -0.03375244, 65248.0
+//    target firsts: -0.6931472, -0.15837766, -0.20979747, 2.302585
 //    colour of the pixel: 0.615625, 0.36875, 0.246875
 //
 // How to draw with it. Targets may have 32 bits a channel wherever 16 are named.
-// 0. zeta = peelnet_zeta(z, near, far): z is the distance along the view axis, near and far the range of z that the bounding boxes of the transparent objects in view span, clipped to the camera's. A tight range matters more than anything else you choose. Compute zeta with this function in all passes. Its range is the same for the whole frame: peelnet_zeta_in(z, peelnet_range(near, far)) is the same value, and the range may be passed in.
+// 0. zeta = peelnet_zeta(z, near, far): z is the distance along the view axis, near and far the range of z that the bounding boxes of the transparent objects in view span, clipped to the camera's. A tight range matters more than anything else you choose. Compute zeta with this function in all passes. Its range is the same for the whole frame: peelnet_zeta_in(z, peelnet_range(near, far)) is the same value, and the range may be passed in. Where boxes show that nothing lies between two depths, use peelnet_cut(zeta, gaps) for zeta in all passes: it leaves up to two such gaps out.
 // 1. Pass "range": draw all transparent surfaces, in any order. PeelnetBins bins = peelnet_bins(alpha, zeta);
 //    bins_front: rgba8unorm, cleared to 0, blending ADD, from bins.front
 //    bins_back: rgba8unorm, cleared to 0, blending ADD, from bins.back
-// 2. Pass "statistics": draw all transparent surfaces, in any order. PeelnetStatistics s = peelnet_statistics(alpha, peelnet_in_pixel(zeta, bins_front, bins_back));
+//    range: rg8unorm, cleared to 0, blending MAX, from bins.range
+// 2. Pass "statistics": draw all transparent surfaces, in any order. PeelnetStatistics s = peelnet_statistics(alpha, peelnet_in_pixel(zeta, bins_front, bins_back, range));
 //    absorbances: rgba16float, cleared to 0, blending ADD, from s.absorbances
 //    nearest: rgba16float, cleared to -65504, blending MAX, from s.nearest
 //    farthest: rgba16float, cleared to -65504, blending MAX, from s.farthest
 //    firsts: rgba16float, cleared to 0, blending ADD, from s.firsts
-// 3. Pass "weights": draw all transparent surfaces, in any order. float w = peelnet_fragment(alpha, peelnet_in_pixel(zeta, bins_front, bins_back), absorbances, nearest, farthest, firsts).x;
+// 3. Pass "weights": draw all transparent surfaces, in any order. float w = peelnet_fragment(alpha, peelnet_in_pixel(zeta, bins_front, bins_back, range), absorbances, nearest, farthest, firsts).x;
 //    sums: rgba16float, cleared to 0, blending ADD, from float4(alpha * rgb, alpha) * w
 // 4. Resolve: peelnet_resolve(sums, absorbances.x + absorbances.y + absorbances.z + absorbances.w, background) is the colour of the pixel, and its coverage in alpha.
 // - alpha is opacity, rgb the linear colour that is not multiplied by it. Resolve before tone mapping and encoding.
@@ -83,6 +85,8 @@ struct PeelnetBetween {
 struct PeelnetBins {
     metal::float4 front;
     metal::float4 back;
+    metal::float2 range;
+    char _pad3[8];
 };
 struct PeelnetStatistics {
     metal::float4 absorbances;
@@ -91,14 +95,13 @@ struct PeelnetStatistics {
     metal::float4 firsts;
 };
 constant float PEELNET_FAINT = 0.003921569;
-constant float PEELNET_LEAST_SEEN = 0.00390625;
 constant float PEELNET_BIN_LEVELS = 64.0;
 constant float PEELNET_BINS = 1920.0;
 constant float PEELNET_OPACITIES = 32.0;
 constant float PEELNET_EMPTY = -65504.0;
-constant float PEELNET_FIRST_END = 0.38;
-constant float PEELNET_SECOND_END = 0.685;
-constant float PEELNET_THIRD_END = 0.84;
+constant float PEELNET_FIRST_END = 0.34;
+constant float PEELNET_SECOND_END = 0.68;
+constant float PEELNET_THIRD_END = 0.87;
 constant float PEELNET_LAST_SLAB = 3.0;
 
 PeelnetRange peelnet_range(
@@ -169,47 +172,53 @@ PeelnetBins peelnet_bins(
     float alpha_1,
     float zeta_1
 ) {
-    metal::float4 place_3 = metal::float4(metal::clamp((zeta_1 * 4.0) + 3.5, 0.0, 7.0));
+    metal::float4 place_4 = metal::float4(metal::clamp((zeta_1 * 4.0) + 3.5, 0.0, 7.0));
     float _e10 = peelnet_absorbance(alpha_1);
     float level = metal::max(metal::floor((_e10 * PEELNET_BIN_LEVELS) + 0.5), 1.0);
-    metal::float4 front_1 = metal::max(metal::float4(1.0) - metal::abs(place_3 - metal::float4(0.0, 1.0, 2.0, 3.0)), metal::float4(0.0));
-    metal::float4 back_1 = metal::max(metal::float4(1.0) - metal::abs(place_3 - metal::float4(4.0, 5.0, 6.0, 7.0)), metal::float4(0.0));
-    return PeelnetBins {metal::floor((level * front_1) + metal::float4(0.5)) / metal::float4(255.0), metal::floor((level * back_1) + metal::float4(0.5)) / metal::float4(255.0)};
+    metal::float4 front_2 = metal::max(metal::float4(1.0) - metal::abs(place_4 - metal::float4(0.0, 1.0, 2.0, 3.0)), metal::float4(0.0));
+    metal::float4 back_2 = metal::max(metal::float4(1.0) - metal::abs(place_4 - metal::float4(4.0, 5.0, 6.0, 7.0)), metal::float4(0.0));
+    float depth = 127.5 * (zeta_1 + 1.0);
+    return PeelnetBins {metal::floor((level * front_2) + metal::float4(0.5)) / metal::float4(255.0), metal::floor((level * back_2) + metal::float4(0.5)) / metal::float4(255.0), metal::float2(255.0 - metal::floor(depth), metal::ceil(depth)) / metal::float2(255.0)};
 }
 
-metal::float4 peelnet_passing(
+metal::float4 peelnet_seen_behind(
     float before,
     metal::float4 bins
 ) {
     float two = bins.x + bins.y;
-    metal::float4 absorbances_2 = metal::float4(bins.x, two, two + bins.z, (two + bins.z) + bins.w);
-    return metal::exp((metal::float4(before) + absorbances_2) * -3.984375);
+    metal::float4 levels_3 = metal::float4(before) + metal::float4(bins.x, two, two + bins.z, (two + bins.z) + bins.w);
+    return metal::exp(levels_3 * -3.984375);
 }
 
-metal::float4 peelnet_shares(
-    metal::float4 before_1,
-    metal::float4 behind,
-    metal::float4 bins_1
+float peelnet_up_to(
+    float place,
+    metal::float4 front,
+    metal::float4 back
 ) {
-    metal::float4 has_any = metal::min(bins_1 * 255.0, metal::float4(1.0));
-    return metal::sqrt(metal::max(before_1 - behind, metal::float4(0.00390625))) * has_any;
+    metal::float4 a = metal::abs(metal::float4(place) - metal::float4(0.0, 1.0, 2.0, 3.0));
+    metal::float4 b = metal::abs(metal::float4(place) - metal::float4(4.0, 5.0, 6.0, 7.0));
+    return metal::dot(front, a - metal::float4(a.yzw, b.x)) + metal::dot(back, b - metal::float4(b.yzw, metal::abs(place - 8.0)));
 }
 
 float peelnet_in_pixel(
     float zeta_2,
-    metal::float4 front,
-    metal::float4 back
+    metal::float4 front_1,
+    metal::float4 back_1,
+    metal::float2 range_1
 ) {
-    float place_4 = (zeta_2 * 4.0) + 4.0;
-    metal::float4 none = metal::float4(0.0);
-    metal::float4 one = metal::float4(1.0);
-    metal::float4 _e12 = peelnet_passing(0.0, front);
-    metal::float4 _e14 = peelnet_passing(metal::dot(front, one), back);
-    metal::float4 _e18 = peelnet_shares(metal::float4(1.0, _e12.xyz), _e12, front);
-    metal::float4 _e22 = peelnet_shares(metal::float4(_e12.w, _e14.xyz), _e14, back);
-    float passed_1 = metal::dot(_e18, metal::clamp(metal::float4(place_4) - metal::float4(0.0, 1.0, 2.0, 3.0), none, one)) + metal::dot(_e22, metal::clamp(metal::float4(place_4) - metal::float4(4.0, 5.0, 6.0, 7.0), none, one));
-    float all = metal::dot(_e18 + _e22, one);
-    return (all == 0.0) ? metal::sqrt(place_4 * 0.125) : metal::min(passed_1 / metal::max(all, 0.000001), 1.0);
+    float place_5 = (zeta_2 * 4.0) + 4.0;
+    metal::float4 _e9 = peelnet_seen_behind(0.0, front_1);
+    metal::float4 _e13 = peelnet_seen_behind(metal::dot(front_1, metal::float4(1.0)), back_1);
+    metal::float4 of_front = metal::sqrt(metal::abs(metal::float4(1.0, _e9.xyz) - _e9));
+    metal::float4 of_back = metal::sqrt(metal::abs(metal::float4(_e9.w, _e13.xyz) - _e13));
+    metal::float2 levels_4 = metal::floor((range_1 * 255.0) + metal::float2(0.5));
+    float nearest_2 = 255.0 - levels_4.x;
+    float _e37 = peelnet_up_to(nearest_2 * 0.03137255, of_front, of_back);
+    float _e44 = peelnet_up_to(metal::max(levels_4.y, nearest_2 + 1.0) * 0.03137255, of_front, of_back);
+    float all = _e44 - _e37;
+    float _e46 = peelnet_up_to(place_5, of_front, of_back);
+    float passed_1 = (_e46 - _e37) / metal::max(all, 0.000001);
+    return (all == 0.0) ? metal::sqrt(place_5 * 0.125) : metal::clamp(passed_1, 0.0, 1.0);
 }
 
 float peelnet_of_slab(
@@ -227,8 +236,8 @@ PeelnetPlace peelnet_place(
     float first_1 = (t >= PEELNET_FIRST_END) ? 1.0 : 0.0;
     float passed_2 = (first_1 + ((t >= PEELNET_SECOND_END) ? 1.0 : 0.0)) + ((t >= PEELNET_THIRD_END) ? 1.0 : 0.0);
     float slab_2 = metal::min(passed_2, PEELNET_LAST_SLAB);
-    float _e27 = peelnet_of_slab(metal::float4(0.0, 0.38, 0.685, 0.84), slab_2);
-    float _e33 = peelnet_of_slab(metal::float4(0.38, 0.685, 0.84, 1.0), slab_2);
+    float _e27 = peelnet_of_slab(metal::float4(0.0, 0.34, 0.68, 0.87), slab_2);
+    float _e33 = peelnet_of_slab(metal::float4(0.34, 0.68, 0.87, 1.0), slab_2);
     float inside = (t - _e27) / (_e33 - _e27);
     float bin_1 = metal::min(metal::floor(inside * PEELNET_BINS), 1919.0);
     float opacity = metal::floor(((_e2 / (_e2 + 1.0)) * 32.9375) + 0.5);
@@ -238,11 +247,11 @@ PeelnetPlace peelnet_place(
 
 metal::float2 peelnet_records(
     float alpha_3,
-    PeelnetPlace place
+    PeelnetPlace place_1
 ) {
-    metal::float3 _e6 = peelnet_halves(metal::float3(place.near, place.far, place.far));
-    metal::float2 levels_3 = _e6.xy;
-    return (alpha_3 < PEELNET_FAINT) ? metal::float2(-65504.0) : levels_3;
+    metal::float3 _e6 = peelnet_halves(metal::float3(place_1.near, place_1.far, place_1.far));
+    metal::float2 levels_5 = _e6.xy;
+    return (alpha_3 < PEELNET_FAINT) ? metal::float2(-65504.0) : levels_5;
 }
 
 metal::float2 peelnet_absorbances_of(
@@ -267,7 +276,7 @@ metal::float4 peelnet_in_slab(
 }
 
 PeelnetBetween peelnet_between(
-    PeelnetPlace place_1,
+    PeelnetPlace place_2,
     float total,
     float first,
     metal::float2 levels_2
@@ -276,15 +285,15 @@ PeelnetBetween peelnet_between(
     bool local_1 = {};
     float begin = {};
     float end = {};
-    float b = place_1.absorbance;
-    float others = metal::max(total - b, 0.0);
+    float b_1 = place_2.absorbance;
+    float others = metal::max(total - b_1, 0.0);
     float noise = metal::max(total * 0.0009765625, 0.000001);
     float near_back = metal::floor(levels_2.x * 0.03125);
     float near_bin = 1919.0 - near_back;
     float near_level = levels_2.x + ((near_bin - near_back) * PEELNET_OPACITIES);
     metal::float2 _e23 = peelnet_absorbances_of(levels_2);
     bool all_1 = _e23.x > (others - (((0.019354839 * (1.0 + _e23.x)) * (1.0 + _e23.x)) + noise));
-    float near_3 = (near_bin > place_1.bin) ? 0.0 : (all_1 ? others : _e23.x);
+    float near_3 = (near_bin > place_2.bin) ? 0.0 : (all_1 ? others : _e23.x);
     float far_bin = metal::floor(levels_2.y * 0.03125);
     if (!((levels_2.y == near_level))) {
         local = levels_2.y < 0.0;
@@ -293,7 +302,7 @@ PeelnetBetween peelnet_between(
     }
     bool is_one = local;
     if (!(is_one)) {
-        local_1 = far_bin < place_1.bin;
+        local_1 = far_bin < place_2.bin;
     } else {
         local_1 = true;
     }
@@ -303,33 +312,33 @@ PeelnetBetween peelnet_between(
     begin = _e67;
     float _e69 = peelnet_middle_of(far_bin);
     end = is_one ? 1.0 : _e69;
-    float rest = ((total - b) - near_3) - far_2;
+    float rest = ((total - b_1) - near_3) - far_2;
     float _e79 = begin;
     float _e82 = end;
-    float moment = ((first - (b * place_1.inside)) - (near_3 * _e79)) - (far_2 * _e82);
+    float moment = ((first - (b_1 * place_2.inside)) - (near_3 * _e79)) - (far_2 * _e82);
     float _e85 = begin;
     float _e86 = begin;
-    begin = (_e86 > place_1.inside) ? -1.0 : _e85;
+    begin = (_e86 > place_2.inside) ? -1.0 : _e85;
     float _e91 = end;
     float _e92 = end;
-    end = (_e92 < place_1.inside) ? 1.0 : _e91;
-    float in_front = (near_3 * ((near_bin == place_1.bin) ? 0.5 : 1.0)) + (far_2 * ((far_bin == place_1.bin) ? 0.5 : 0.0));
+    end = (_e92 < place_2.inside) ? 1.0 : _e91;
+    float in_front = (near_3 * ((near_bin == place_2.bin) ? 0.5 : 1.0)) + (far_2 * ((far_bin == place_2.bin) ? 0.5 : 0.0));
     float _e110 = end;
     float _e111 = begin;
     float extent_1 = metal::max(_e110 - _e111, 0.0010416667);
     float per_extent = 1.0 / extent_1;
     float _e118 = begin;
-    float x = metal::clamp((place_1.inside - _e118) * per_extent, 0.0, 1.0);
+    float x = metal::clamp((place_2.inside - _e118) * per_extent, 0.0, 1.0);
     float _e126 = begin;
     float _e127 = end;
-    float depth = metal::clamp(moment / metal::max(rest, noise), _e126, _e127);
+    float depth_1 = metal::clamp(moment / metal::max(rest, noise), _e126, _e127);
     float _e129 = begin;
-    float mean = metal::clamp((depth - _e129) * per_extent, 0.0, 1.0);
-    bool before_2 = x < mean;
-    float bound = (before_2 ? (1.0 - mean) : (x - mean)) / metal::max(before_2 ? (1.0 - x) : x, 0.000001);
-    float low = before_2 ? 0.0 : bound;
-    float high = before_2 ? bound : 1.0;
-    return PeelnetBetween {metal::max(rest, 0.0), x, mean, low, high, 0.5 * extent_1, b, in_front};
+    float mean = metal::clamp((depth_1 - _e129) * per_extent, 0.0, 1.0);
+    bool before_1 = x < mean;
+    float bound = (before_1 ? (1.0 - mean) : (x - mean)) / metal::max(before_1 ? (1.0 - x) : x, 0.000001);
+    float low = before_1 ? 0.0 : bound;
+    float high = before_1 ? bound : 1.0;
+    return PeelnetBetween {metal::max(rest, 0.0), x, mean, low, high, 0.5 * extent_1, b_1, in_front};
 }
 
 bool peelnet_is_kept(
@@ -361,10 +370,10 @@ float peelnet_share(
     metal::float4 input_a = metal::float4(root_absorbance, place_fraction, mean_fraction, share_low);
     metal::float4 input_b = metal::float4(share_high, root_own, half_extent, of_own);
     metal::float4 input_c = metal::float4(of_nearest, 0.0, 0.0, 0.0);
-    metal::float4 layer_a_a = metal::max(((metal::float4(3.2462375, -3.2699733, 2.0795698, 8.754615) + (metal::float4x4(metal::float4(0.03195625, 0.06991469, -0.11084325, 0.050414875), metal::float4(-1.1103786, 0.44438714, -2.7028003, -2.6733677), metal::float4(0.6288057, 0.13087533, 2.6067007, -0.48397854), metal::float4(-3.6312008, 3.8734055, -6.387105, 4.470367)) * input_a)) + (metal::float4x4(metal::float4(-0.9691928, 5.442423, -0.4443696, 0.7165438), metal::float4(0.43283042, -0.1484769, -0.84573996, -0.7849737), metal::float4(0.5805953, -0.1903229, 1.7457689, -0.23753698), metal::float4(-2.720782, -4.0996428, 0.90138376, -4.9847393)) * input_b)) + (metal::float4(-1.8213676, 0.116678245, -1.9264252, -2.9728286) * input_c.x), metal::float4(0.0));
-    metal::float4 layer_a_b = metal::max(((metal::float4(10.510607, -3.8923492, 3.072055, 6.000249) + (metal::float4x4(metal::float4(-0.09647166, 0.20310876, -0.028520348, 0.0021476196), metal::float4(-2.9062073, 0.22728884, -3.1631322, 3.4483242), metal::float4(-4.67893, 4.058475, -2.4258206, -1.5965548), metal::float4(-6.36753, 5.93288, 0.41062704, -1.1512088)) * input_a)) + (metal::float4x4(metal::float4(-1.2040421, 0.76668143, -2.31968, -0.87386155), metal::float4(0.5476562, 0.57502145, -0.10347233, -2.3200312), metal::float4(-0.97067636, -1.7821109, -0.008641228, 1.2771134), metal::float4(-1.3998032, 0.182419, 0.1342523, -1.691575)) * input_b)) + (metal::float4(-1.8134261, -0.19351593, -0.058829058, -3.1290808) * input_c.x), metal::float4(0.0));
-    metal::float4 layer_a_c = metal::max(((metal::float4(0.49121752, -9.50615, -2.9425182, 5.1307487) + (metal::float4x4(metal::float4(-0.06508959, 0.2179142, 0.25738588, 0.16194177), metal::float4(0.30774269, 0.5832492, -0.8073733, -1.8338085), metal::float4(0.819847, -1.8208967, -4.6793585, 2.1063526), metal::float4(-1.0088379, 1.1399693, -4.8758698, -3.7558901)) * input_a)) + (metal::float4x4(metal::float4(-1.8062855, 6.626333, 0.573116, -0.8338889), metal::float4(0.8915273, -0.21221328, 1.2831217, -0.5544597), metal::float4(-1.7439699, -1.3883057, -0.48767817, -3.5469673), metal::float4(-3.2215645, -1.8292199, 1.8131012, -2.175973)) * input_b)) + (metal::float4(4.4010983, 6.5133114, 2.5301306, 0.5209779) * input_c.x), metal::float4(0.0));
-    float layer_b_a = 1.0 / (1.0 + metal::exp(metal::min(-((((-0.92924744 + metal::dot(metal::float4(-1.1672554, 1.4368079, -0.66805565, -0.59655744), layer_a_a)) + metal::dot(metal::float4(0.56415296, 0.4231643, -2.3594532, 0.6463365), layer_a_b)) + metal::dot(metal::float4(-0.26553136, 0.63752025, -0.7536124, -0.28365612), layer_a_c))), 80.0)));
+    metal::float4 layer_a_a = metal::max(((metal::float4(2.5333376, 0.070135444, 6.55761, 9.338499) + (metal::float4x4(metal::float4(0.06938627, -0.18546443, -0.16126896, -0.0978224), metal::float4(-2.8618555, 1.1962174, -2.2454934, -1.967748), metal::float4(-1.3940566, -3.5056498, -1.1702229, -1.1813458), metal::float4(-1.0886809, -0.014783437, -3.0635908, -1.4621649)) * input_a)) + (metal::float4x4(metal::float4(-0.6980536, 1.7846111, 0.25155202, -0.0022205736), metal::float4(-0.17082416, -0.13570544, 0.13718012, -0.7164993), metal::float4(-0.059486482, 1.4970536, -1.5278703, -3.0911248), metal::float4(-0.45216277, 0.646417, -0.11476041, -1.99819)) * input_b)) + (metal::float4(-0.2150367, 0.05851872, -1.1947396, -1.0811282) * input_c.x), metal::float4(0.0));
+    metal::float4 layer_a_b = metal::max(((metal::float4(8.595566, -2.1603658, -4.6171513, 4.446983) + (metal::float4x4(metal::float4(0.046490982, -0.021122804, -0.0967739, -0.05729483), metal::float4(-2.5474672, 1.0714152, -1.9551623, 2.394742), metal::float4(-5.0801864, 3.263625, -0.07937207, -2.860324), metal::float4(-4.577743, 1.0223571, 6.441565, 4.304795)) * input_a)) + (metal::float4x4(metal::float4(-2.6261086, 1.7954695, 1.8110046, 0.93702084), metal::float4(0.53599936, 0.5783657, 0.38734752, -1.5262477), metal::float4(-1.0452762, -3.8572392, 2.4509215, -1.5024484), metal::float4(-0.32625282, 0.08800727, 4.724238, -0.42166162)) * input_b)) + (metal::float4(0.3956092, -0.30297762, -2.0267947, -1.7356248) * input_c.x), metal::float4(0.0));
+    metal::float4 layer_a_c = metal::max(((metal::float4(4.4543576, -2.973365, -7.652848, 0.42543393) + (metal::float4x4(metal::float4(0.029131893, 0.18631081, 0.13666841, 0.16539651), metal::float4(-0.26469445, 1.1132456, 0.82761866, -1.2643151), metal::float4(-0.783623, -0.6680362, -1.178817, 0.2704268), metal::float4(-1.805566, 0.664728, -5.7957106, -4.446497)) * input_a)) + (metal::float4x4(metal::float4(-2.092326, 5.091627, 1.0575033, -2.1673481), metal::float4(0.5481401, -0.061678205, 1.246126, -0.46817154), metal::float4(1.2582825, 0.33472043, 0.6918554, 1.199201), metal::float4(-3.7064905, -4.3939705, 3.915088, -4.182435)) * input_b)) + (metal::float4(-1.6668515, -0.2672489, 2.1147249, 4.4725013) * input_c.x), metal::float4(0.0));
+    float layer_b_a = 1.0 / (1.0 + metal::exp(metal::min(-((((-0.5501553 + metal::dot(metal::float4(-1.4394537, 0.49696675, -0.45589456, -0.36356), layer_a_a)) + metal::dot(metal::float4(0.51607615, 0.32655874, -0.5143021, 0.58047265), layer_a_b)) + metal::dot(metal::float4(-0.9152549, 1.665513, -0.56657845, -0.7014192), layer_a_c))), 80.0)));
     return layer_b_a;
 }
 
@@ -376,7 +385,7 @@ float peelnet_network(
 }
 
 metal::float2 peelnet_weigh(
-    PeelnetPlace place_2,
+    PeelnetPlace place_3,
     bool counts,
     metal::float4 absorbances,
     metal::float4 firsts,
@@ -390,31 +399,31 @@ metal::float2 peelnet_weigh(
     bool local_6 = {};
     bool local_7 = {};
     metal::float4 sums_2 = metal::min(absorbances, metal::float4(65504.0));
-    float _e11 = peelnet_of_slab(sums_2, place_2.slab);
-    float _e13 = peelnet_of_slab(firsts, place_2.slab);
+    float _e11 = peelnet_of_slab(sums_2, place_3.slab);
+    float _e13 = peelnet_of_slab(firsts, place_3.slab);
     float first_2 = metal::clamp(_e13, -65504.0, 65504.0);
-    float _e18 = peelnet_of_slab(nearest, place_2.slab);
-    float _e20 = peelnet_of_slab(farthest, place_2.slab);
+    float _e18 = peelnet_of_slab(nearest, place_3.slab);
+    float _e20 = peelnet_of_slab(farthest, place_3.slab);
     metal::float2 halves_1 = metal::float2(_e18, _e20);
     metal::float3 _e24 = peelnet_levels(metal::float3(halves_1, halves_1.y));
     metal::float2 decoded = _e24.xy;
-    metal::float2 levels_4 = (place_2.slab < ends) ? decoded : metal::float2(decoded.x, -1.0);
-    float before_3 = (((place_2.slab > 0.0) ? sums_2.x : 0.0) + ((place_2.slab > 1.0) ? sums_2.y : 0.0)) + ((place_2.slab > 2.0) ? sums_2.z : 0.0);
+    metal::float2 levels_6 = (place_3.slab < ends) ? decoded : metal::float2(decoded.x, -1.0);
+    float before_2 = (((place_3.slab > 0.0) ? sums_2.x : 0.0) + ((place_3.slab > 1.0) ? sums_2.y : 0.0)) + ((place_3.slab > 2.0) ? sums_2.z : 0.0);
     if (counts) {
-        bool _e56 = peelnet_is_kept(place_2.near, levels_4.x);
+        bool _e56 = peelnet_is_kept(place_3.near, levels_6.x);
         local_3 = _e56;
     } else {
         local_3 = false;
     }
     bool is_near = local_3;
     if (counts) {
-        local_4 = levels_4.y >= 0.0;
+        local_4 = levels_6.y >= 0.0;
     } else {
         local_4 = false;
     }
     bool _e65 = local_4;
     if (_e65) {
-        bool _e70 = peelnet_is_kept(place_2.far, levels_4.y);
+        bool _e70 = peelnet_is_kept(place_3.far, levels_6.y);
         local_5 = _e70;
     } else {
         local_5 = false;
@@ -432,12 +441,12 @@ metal::float2 peelnet_weigh(
         local_7 = true;
     }
     bool known = local_7;
-    PeelnetBetween _e83 = peelnet_between(place_2, _e11, first_2, levels_4);
+    PeelnetBetween _e83 = peelnet_between(place_3, _e11, first_2, levels_6);
     float _e88 = peelnet_network(_e83);
     float share_1 = _e83.low + ((_e83.high - _e83.low) * _e88);
-    float at_end = is_far ? metal::max(_e11 - place_2.absorbance, 0.0) : 0.0;
+    float at_end = is_far ? metal::max(_e11 - place_3.absorbance, 0.0) : 0.0;
     float inside_1 = known ? at_end : (_e83.nearest + (_e83.absorbance * share_1));
-    return metal::float2(metal::exp(-((before_3 + inside_1))), known ? 1.0 : 0.0);
+    return metal::float2(metal::exp(-((before_2 + inside_1))), known ? 1.0 : 0.0);
 }
 
 PeelnetStatistics peelnet_statistics(
@@ -505,7 +514,7 @@ float peelnet_weight(
     float of_nearest_1
 ) {
     float root = metal::clamp(root_absorbance_1, 0.0, 256.0);
-    float _e39 = peelnet_share(metal::clamp(root_absorbance_1, -40224.133, 40234.547), metal::clamp(place_fraction_1, -2924.509, 2925.556), metal::clamp(mean_fraction_1, -1657.5375, 1658.5785), metal::clamp(share_low_1, -2087.3262, 2087.65), metal::clamp(share_high_1, -2262.9114, 2264.5842), metal::clamp(root_own_1, -5813.1367, 5814.793), metal::clamp(half_extent_1, -2003.8801, 2005.4695), metal::clamp(of_own_1, -1717.3046, 1719.1232), metal::clamp(of_nearest_1, -1720.3542, 1722.1699));
+    float _e39 = peelnet_share(metal::clamp(root_absorbance_1, -46650.96, 46662.758), metal::clamp(place_fraction_1, -3139.3584, 3140.751), metal::clamp(mean_fraction_1, -2176.8862, 2178.2773), metal::clamp(share_low_1, -1791.4802, 1791.7402), metal::clamp(share_high_1, -2751.7651, 2753.417), metal::clamp(root_own_1, -5687.959, 5689.5596), metal::clamp(half_extent_1, -2164.8708, 2166.4324), metal::clamp(of_own_1, -1736.1511, 1737.9824), metal::clamp(of_nearest_1, -1725.541, 1727.3652));
     metal::float2 bounds = metal::clamp(metal::float2(share_low_1, share_high_1), metal::float2(0.0), metal::float2(1.0));
     return metal::exp((-(root) * root) * metal::mix(bounds.x, bounds.y, _e39));
 }

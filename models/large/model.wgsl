@@ -3,23 +3,23 @@
 // WGSL, plain WebGPU. Compiled by naga, and run on a GPU against the network at every export.
 // Network: 9-12-1 (Relu hidden, Sigmoid last), 133 parameters, 120 multiply-adds. Recipe large, seed 1, 80 epochs.
 // Answers: transmittance of what lies between a slab's known ends, exp(-absorbance * share) with absorbance = root_absorbance^2 and share in share_low .. share_high.
-// Input 0: root_absorbance (root of the absorbance between the slab's ends), 0.0 .. 19.254885 in training.
+// Input 0: root_absorbance (root of the absorbance between the slab's ends), 0.0 .. 21.107838 in training.
 // Input 1: place_fraction (of the way between the slab's ends), 0.0 .. 1.0 in training.
 // Input 2: mean_fraction (of the way between the slab's ends), 0.0 .. 1.0 in training.
 // Input 3: share_low (of the absorbance between the slab's ends), 0.0 .. 1.0 in training.
 // Input 4: share_high (of the absorbance between the slab's ends), 0.0 .. 1.0 in training.
 // Input 5: root_own (root of the fragment's absorbance), 0.031630483 .. 2.4013393 in training.
 // Input 6: half_extent (half of the way between the slab's ends, in slabs), 0.00052083336 .. 1.0 in training.
-// Input 7: of_own (absorbance between the ends, of that and the fragment's), 0.0 .. 0.99999064 in training.
+// Input 7: of_own (absorbance between the ends, of that and the fragment's), 0.0 .. 0.9999906 in training.
 // Input 8: of_nearest (absorbance between the ends, of that and the nearer end's), 0.0 .. 1.0 in training.
 // Trained on 21565798 rows of boxes, cups, foliage, intersecting, opaque-mix, panes, sixteen-025, sixteen-050, sixteen-075, sixteen-085, sixteen-random-alpha, sixteen-random-color, smoke-100, smoke-30, synthetic (dataset f0e6c4a7cca08d560f99a5be9cbd1514bf8be352632a347602bf08363695fd29+e22e844788a454658277e87e23685b5ffa00e3ad2d48cb833cc53130eaf4d8b7).
-// Loss: training 0.000133, validation 0.000122, test 0.000123.
-// Held-out error, mean |T - T_exact|: boxes-held 0.00174, cups-held 0.00171, foliage-held 0.00056, panes-held 0.00012, sixteen-held 0.00027, smoke-held 0.00405.
+// Loss: training 0.000105, validation 0.000098, test 0.000103.
+// Held-out error, mean |T - T_exact|: boxes-held 0.00160, cups-held 0.00136, foliage-held 0.00038, panes-held 0.00009, sixteen-held 0.00023, smoke-held 0.00333.
 //
 // Self-tests, to some roundings of 32 bits; weights and colours also to those of 16-bit targets.
-// peelnet_weight(0.43794915, 0.67085797, 0.16887921, 0.7373583, 0.19208878, 0.1129206, 0.12900263, 0.4358352, 0.7663156) = 0.87601495
-// peelnet_weight(0.26952705, 0.13589168, 0.26682287, 0.7078695, 0.5534122, 0.8413221, 0.6951227, 0.3716183, 0.9624051) = 0.9499678
-// peelnet_weight(2.451425, 0.2162394, 0.7240006, 0.37958002, 0.26558614, 1.9607327, 0.5804378, 0.9097895, 0.04841405) = 0.11457037
+// peelnet_weight(0.2954644, 0.13589168, 0.26682287, 0.7078695, 0.5534122, 0.8413221, 0.6951227, 0.3716183, 0.9624051) = 0.945929
+// peelnet_weight(2.6873326, 0.2162394, 0.7240006, 0.37958002, 0.26558614, 1.9607327, 0.5804378, 0.90978944, 0.04841405) = 0.065241195
+// peelnet_weight(1.176659, 0.55773175, 0.41844797, 0.7173642, 0.44993675, 1.6151378, 0.48404527, 0.3332267, 0.6325573) = 0.41662478
 // Four fragments of a pixel, near 1.0, far 8.0, background 0.25, 0.5, 0.75:
 //    z 1.0, alpha 0.5, rgb 1.0, 0.0, 0.0: zeta -1.0, weight 1.0
 //    z 2.0, alpha 0.5, rgb 0.0, 1.0, 0.0: zeta -0.33333334, weight 0.5
@@ -27,23 +27,25 @@
 //    z 8.0, alpha 0.9, rgb 1.0, 1.0, 1.0: zeta 1.0, weight 0.125
 //    target bins_front: 0.17254902, 0.0, 0.14509805, 0.02745098
 //    target bins_back: 0.02745098, 0.14509805, 0.0, 0.5764706
+//    target range: 1.0, 1.0
 //    target absorbances: 0.6931472, 0.6931472, 0.6931472, 2.302585
-//    target nearest: 64928.0, 0.26879883, 0.005054474, -64768.0
-//    target farthest: -65088.0, -0.27001953, -0.0050735474, 65248.0
-//    target firsts: -0.6931472, -0.27881977, -0.14537315, 2.302585
+//    target nearest: 64928.0, 0.0072517395, 0.033599854, -64768.0
+//    target farthest: -65088.0, -0.007270813, -0.03375244, 65248.0
+//    target firsts: -0.6931472, -0.15837766, -0.20979747, 2.302585
 //    colour of the pixel: 0.615625, 0.36875, 0.246875
 //
 // How to draw with it. Targets may have 32 bits a channel wherever 16 are named.
-// 0. zeta = peelnet_zeta(z, near, far): z is the distance along the view axis, near and far the range of z that the bounding boxes of the transparent objects in view span, clipped to the camera's. A tight range matters more than anything else you choose. Compute zeta with this function in all passes. Its range is the same for the whole frame: peelnet_zeta_in(z, peelnet_range(near, far)) is the same value, and the range may be passed in.
+// 0. zeta = peelnet_zeta(z, near, far): z is the distance along the view axis, near and far the range of z that the bounding boxes of the transparent objects in view span, clipped to the camera's. A tight range matters more than anything else you choose. Compute zeta with this function in all passes. Its range is the same for the whole frame: peelnet_zeta_in(z, peelnet_range(near, far)) is the same value, and the range may be passed in. Where boxes show that nothing lies between two depths, use peelnet_cut(zeta, gaps) for zeta in all passes: it leaves up to two such gaps out.
 // 1. Pass "range": draw all transparent surfaces, in any order. let bins = peelnet_bins(alpha, zeta);
 //    bins_front: rgba8unorm, cleared to 0, blending ADD, from bins.front
 //    bins_back: rgba8unorm, cleared to 0, blending ADD, from bins.back
-// 2. Pass "statistics": draw all transparent surfaces, in any order. let s = peelnet_statistics(alpha, peelnet_in_pixel(zeta, bins_front, bins_back));
+//    range: rg8unorm, cleared to 0, blending MAX, from bins.range
+// 2. Pass "statistics": draw all transparent surfaces, in any order. let s = peelnet_statistics(alpha, peelnet_in_pixel(zeta, bins_front, bins_back, range));
 //    absorbances: rgba16float, cleared to 0, blending ADD, from s.absorbances
 //    nearest: rgba16float, cleared to -65504, blending MAX, from s.nearest
 //    farthest: rgba16float, cleared to -65504, blending MAX, from s.farthest
 //    firsts: rgba16float, cleared to 0, blending ADD, from s.firsts
-// 3. Pass "weights": draw all transparent surfaces, in any order. let w = peelnet_fragment(alpha, peelnet_in_pixel(zeta, bins_front, bins_back), absorbances, nearest, farthest, firsts).x;
+// 3. Pass "weights": draw all transparent surfaces, in any order. let w = peelnet_fragment(alpha, peelnet_in_pixel(zeta, bins_front, bins_back, range), absorbances, nearest, farthest, firsts).x;
 //    sums: rgba16float, cleared to 0, blending ADD, from vec4f(alpha * rgb, alpha) * w
 // 4. Resolve: peelnet_resolve(sums, absorbances.x + absorbances.y + absorbances.z + absorbances.w, background) is the colour of the pixel, and its coverage in alpha.
 // - alpha is opacity, rgb the linear colour that is not multiplied by it. Resolve before tone mapping and encoding.
@@ -102,8 +104,6 @@ fn peelnet_levels(halves: vec3f) -> vec3f {
 
 // Fragments of less opacity are composited, but are never a slab's nearest or farthest.
 const PEELNET_FAINT: f32 = 0.003921569;
-// What is seen of a bin that has fragments, at least: where little light passes, order still counts a little.
-const PEELNET_LEAST_SEEN: f32 = 0.00390625;
 // Levels of 8 bits that an absorbance of 1 is.
 const PEELNET_BIN_LEVELS: f32 = 64.0;
 // Bins of depth in a slab, and levels of opacity in each, that its nearest and its farthest fragment are kept with.
@@ -153,49 +153,63 @@ fn peelnet_cut(zeta: f32, gaps: vec4f) -> f32 {
     return kept * (2.0 / (2.0 - lengths.x - lengths.y)) - 1.0;
 }
 
-// Absorbances of eight bins of the frame's depth, nearest first, in 8 bits.
+// What is known of a pixel's depths, in 8 bits.
 struct PeelnetBins {
+    // Absorbances of eight bins of the frame's depth, nearest first.
     front: vec4f,
     back: vec4f,
+    // The level of the nearest depth, counted from the far end, and of the farthest.
+    range: vec2f,
 }
 
-// What a fragment adds to 8-bit targets: its absorbance, shared between the two bins whose middles it lies between, so that little changes as
-// it moves from one to the other, and in whole levels, so that no order of adding changes a sum.
+// What a fragment writes. Its absorbance is added, shared between the two bins whose middles it lies between, so that little changes as it
+// moves from one to the other, and in whole levels, so that no order of adding changes a sum. Of levels of depth the most is kept: rounded
+// down from the near end, and up from the far end.
 fn peelnet_bins(alpha: f32, zeta: f32) -> PeelnetBins {
     let place = vec4f(clamp(zeta * 4.0 + 3.5, 0.0, 7.0));
     // At least one: a bin with any fragment is not empty.
     let level = max(floor(peelnet_absorbance(alpha) * PEELNET_BIN_LEVELS + 0.5), 1.0);
     let front = max(vec4f(1.0) - abs(place - vec4f(0.0, 1.0, 2.0, 3.0)), vec4f(0.0));
     let back = max(vec4f(1.0) - abs(place - vec4f(4.0, 5.0, 6.0, 7.0)), vec4f(0.0));
-    return PeelnetBins(floor(level * front + 0.5) / 255.0, floor(level * back + 0.5) / 255.0);
+    let depth = 127.5 * (zeta + 1.0);
+    return PeelnetBins(
+        floor(level * front + 0.5) / 255.0,
+        floor(level * back + 0.5) / 255.0,
+        vec2f(255.0 - floor(depth), ceil(depth)) / 255.0,
+    );
 }
 
-// What is let through up to the far end of each of four bins behind an absorbance.
-fn peelnet_passing(before: f32, bins: vec4f) -> vec4f {
+// What is let through by each of four bins and by what is before it.
+fn peelnet_seen_behind(before: f32, bins: vec4f) -> vec4f {
     let two = bins.x + bins.y;
-    let absorbances = vec4f(bins.x, two, two + bins.z, two + bins.z + bins.w);
-    return exp((vec4f(before) + absorbances) * (-255.0 / PEELNET_BIN_LEVELS));
+    let levels = vec4f(before) + vec4f(bins.x, two, two + bins.z, two + bins.z + bins.w);
+    return exp(levels * (-255.0 / PEELNET_BIN_LEVELS));
 }
 
-// How much of the pixel's scale each of four bins takes: the root of what is seen of it, and nothing where it is empty.
-fn peelnet_shares(before: vec4f, behind: vec4f, bins: vec4f) -> vec4f {
-    let has_any = min(bins * 255.0, vec4f(1.0));
-    return sqrt(max(before - behind, vec4f(PEELNET_LEAST_SEEN))) * has_any;
+// How much of eight bins lies before a place among them: twice that, and a number that is the same for all places.
+fn peelnet_up_to(place: f32, front: vec4f, back: vec4f) -> f32 {
+    // A bin's own part is half of 1 + |place - its begin| - |place - its end|.
+    let a = abs(vec4f(place) - vec4f(0.0, 1.0, 2.0, 3.0));
+    let b = abs(vec4f(place) - vec4f(4.0, 5.0, 6.0, 7.0));
+    return dot(front, a - vec4f(a.yzw, b.x)) + dot(back, b - vec4f(b.yzw, abs(place - 8.0)));
 }
 
-// Where a depth lies in its pixel, 0 .. 1, by the absorbances of its bins. Where all are empty, it is the root of the frame's depth.
-fn peelnet_in_pixel(zeta: f32, front: vec4f, back: vec4f) -> f32 {
+// Where a depth lies in its pixel, 0 .. 1, by what is known of the pixel's depths: between its ends each bin takes as much as its length times
+// the root of what is seen of it. Where all bins are empty, it is the root of the frame's depth.
+fn peelnet_in_pixel(zeta: f32, front: vec4f, back: vec4f, range: vec2f) -> f32 {
     let place = zeta * 4.0 + 4.0;
-    let none = vec4f(0.0);
-    let one = vec4f(1.0);
-    let near = peelnet_passing(0.0, front);
-    let far = peelnet_passing(dot(front, one), back);
-    let of_front = peelnet_shares(vec4f(1.0, near.xyz), near, front);
-    let of_back = peelnet_shares(vec4f(near.w, far.xyz), far, back);
-    let passed = dot(of_front, clamp(vec4f(place) - vec4f(0.0, 1.0, 2.0, 3.0), none, one))
-        + dot(of_back, clamp(vec4f(place) - vec4f(4.0, 5.0, 6.0, 7.0), none, one));
-    let all = dot(of_front + of_back, one);
-    return select(min(passed / max(all, 1e-6), 1.0), sqrt(place * 0.125), all == 0.0);
+    let near = peelnet_seen_behind(0.0, front);
+    let far = peelnet_seen_behind(dot(front, vec4f(1.0)), back);
+    let of_front = sqrt(abs(vec4f(1.0, near.xyz) - near));
+    let of_back = sqrt(abs(vec4f(near.w, far.xyz) - far));
+    // The pixel's ends, in bins.
+    let levels = floor(range * 255.0 + 0.5);
+    let nearest = 255.0 - levels.x;
+    let begin = peelnet_up_to(nearest * (8.0 / 255.0), of_front, of_back);
+    let end = peelnet_up_to(max(levels.y, nearest + 1.0) * (8.0 / 255.0), of_front, of_back);
+    let all = end - begin;
+    let passed = (peelnet_up_to(place, of_front, of_back) - begin) / max(all, 1e-6);
+    return select(clamp(passed, 0.0, 1.0), sqrt(place * 0.125), all == 0.0);
 }
 
 // t: where in its pixel the fragment lies, 0 .. 1.
@@ -323,9 +337,9 @@ fn peelnet_weigh(
 }
 
 // Where a slab ends and the next begins, in the pixel, and the number of the last slab.
-const PEELNET_FIRST_END: f32 = 0.38;
-const PEELNET_SECOND_END: f32 = 0.685;
-const PEELNET_THIRD_END: f32 = 0.84;
+const PEELNET_FIRST_END: f32 = 0.34;
+const PEELNET_SECOND_END: f32 = 0.68;
+const PEELNET_THIRD_END: f32 = 0.87;
 const PEELNET_LAST_SLAB: f32 = 3.0;
 
 struct PeelnetStatistics {
@@ -386,22 +400,22 @@ fn peelnet_share(root_absorbance: f32, place_fraction: f32, mean_fraction: f32, 
     let input_a = vec4f(root_absorbance, place_fraction, mean_fraction, share_low);
     let input_b = vec4f(share_high, root_own, half_extent, of_own);
     let input_c = vec4f(of_nearest, 0.0, 0.0, 0.0);
-    let layer_a_a = max(vec4f(3.2462375, -3.2699733, 2.0795698, 8.754615)
-        + mat4x4f(vec4f(0.03195625, 0.06991469, -0.11084325, 0.050414875), vec4f(-1.1103786, 0.44438714, -2.7028003, -2.6733677), vec4f(0.6288057, 0.13087533, 2.6067007, -0.48397854), vec4f(-3.6312008, 3.8734055, -6.387105, 4.470367)) * input_a
-        + mat4x4f(vec4f(-0.9691928, 5.442423, -0.4443696, 0.7165438), vec4f(0.43283042, -0.1484769, -0.84573996, -0.7849737), vec4f(0.5805953, -0.1903229, 1.7457689, -0.23753698), vec4f(-2.720782, -4.0996428, 0.90138376, -4.9847393)) * input_b
-        + vec4f(-1.8213676, 0.116678245, -1.9264252, -2.9728286) * input_c.x, vec4f(0.0));
-    let layer_a_b = max(vec4f(10.510607, -3.8923492, 3.072055, 6.000249)
-        + mat4x4f(vec4f(-0.09647166, 0.20310876, -0.028520348, 0.0021476196), vec4f(-2.9062073, 0.22728884, -3.1631322, 3.4483242), vec4f(-4.67893, 4.058475, -2.4258206, -1.5965548), vec4f(-6.36753, 5.93288, 0.41062704, -1.1512088)) * input_a
-        + mat4x4f(vec4f(-1.2040421, 0.76668143, -2.31968, -0.87386155), vec4f(0.5476562, 0.57502145, -0.10347233, -2.3200312), vec4f(-0.97067636, -1.7821109, -0.008641228, 1.2771134), vec4f(-1.3998032, 0.182419, 0.1342523, -1.691575)) * input_b
-        + vec4f(-1.8134261, -0.19351593, -0.058829058, -3.1290808) * input_c.x, vec4f(0.0));
-    let layer_a_c = max(vec4f(0.49121752, -9.50615, -2.9425182, 5.1307487)
-        + mat4x4f(vec4f(-0.06508959, 0.2179142, 0.25738588, 0.16194177), vec4f(0.30774269, 0.5832492, -0.8073733, -1.8338085), vec4f(0.819847, -1.8208967, -4.6793585, 2.1063526), vec4f(-1.0088379, 1.1399693, -4.8758698, -3.7558901)) * input_a
-        + mat4x4f(vec4f(-1.8062855, 6.626333, 0.573116, -0.8338889), vec4f(0.8915273, -0.21221328, 1.2831217, -0.5544597), vec4f(-1.7439699, -1.3883057, -0.48767817, -3.5469673), vec4f(-3.2215645, -1.8292199, 1.8131012, -2.175973)) * input_b
-        + vec4f(4.4010983, 6.5133114, 2.5301306, 0.5209779) * input_c.x, vec4f(0.0));
-    let layer_b_a = 1.0 / (1.0 + exp(min(-(-0.92924744
-        + dot(vec4f(-1.1672554, 1.4368079, -0.66805565, -0.59655744), layer_a_a)
-        + dot(vec4f(0.56415296, 0.4231643, -2.3594532, 0.6463365), layer_a_b)
-        + dot(vec4f(-0.26553136, 0.63752025, -0.7536124, -0.28365612), layer_a_c)), 80.0)));
+    let layer_a_a = max(vec4f(2.5333376, 0.070135444, 6.55761, 9.338499)
+        + mat4x4f(vec4f(0.06938627, -0.18546443, -0.16126896, -0.0978224), vec4f(-2.8618555, 1.1962174, -2.2454934, -1.967748), vec4f(-1.3940566, -3.5056498, -1.1702229, -1.1813458), vec4f(-1.0886809, -0.014783437, -3.0635908, -1.4621649)) * input_a
+        + mat4x4f(vec4f(-0.6980536, 1.7846111, 0.25155202, -0.0022205736), vec4f(-0.17082416, -0.13570544, 0.13718012, -0.7164993), vec4f(-0.059486482, 1.4970536, -1.5278703, -3.0911248), vec4f(-0.45216277, 0.646417, -0.11476041, -1.99819)) * input_b
+        + vec4f(-0.2150367, 0.05851872, -1.1947396, -1.0811282) * input_c.x, vec4f(0.0));
+    let layer_a_b = max(vec4f(8.595566, -2.1603658, -4.6171513, 4.446983)
+        + mat4x4f(vec4f(0.046490982, -0.021122804, -0.0967739, -0.05729483), vec4f(-2.5474672, 1.0714152, -1.9551623, 2.394742), vec4f(-5.0801864, 3.263625, -0.07937207, -2.860324), vec4f(-4.577743, 1.0223571, 6.441565, 4.304795)) * input_a
+        + mat4x4f(vec4f(-2.6261086, 1.7954695, 1.8110046, 0.93702084), vec4f(0.53599936, 0.5783657, 0.38734752, -1.5262477), vec4f(-1.0452762, -3.8572392, 2.4509215, -1.5024484), vec4f(-0.32625282, 0.08800727, 4.724238, -0.42166162)) * input_b
+        + vec4f(0.3956092, -0.30297762, -2.0267947, -1.7356248) * input_c.x, vec4f(0.0));
+    let layer_a_c = max(vec4f(4.4543576, -2.973365, -7.652848, 0.42543393)
+        + mat4x4f(vec4f(0.029131893, 0.18631081, 0.13666841, 0.16539651), vec4f(-0.26469445, 1.1132456, 0.82761866, -1.2643151), vec4f(-0.783623, -0.6680362, -1.178817, 0.2704268), vec4f(-1.805566, 0.664728, -5.7957106, -4.446497)) * input_a
+        + mat4x4f(vec4f(-2.092326, 5.091627, 1.0575033, -2.1673481), vec4f(0.5481401, -0.061678205, 1.246126, -0.46817154), vec4f(1.2582825, 0.33472043, 0.6918554, 1.199201), vec4f(-3.7064905, -4.3939705, 3.915088, -4.182435)) * input_b
+        + vec4f(-1.6668515, -0.2672489, 2.1147249, 4.4725013) * input_c.x, vec4f(0.0));
+    let layer_b_a = 1.0 / (1.0 + exp(min(-(-0.5501553
+        + dot(vec4f(-1.4394537, 0.49696675, -0.45589456, -0.36356), layer_a_a)
+        + dot(vec4f(0.51607615, 0.32655874, -0.5143021, 0.58047265), layer_a_b)
+        + dot(vec4f(-0.9152549, 1.665513, -0.56657845, -0.7014192), layer_a_c)), 80.0)));
     return layer_b_a;
 }
 
@@ -409,7 +423,7 @@ fn peelnet_share(root_absorbance: f32, place_fraction: f32, mean_fraction: f32, 
 fn peelnet_weight(root_absorbance: f32, place_fraction: f32, mean_fraction: f32, share_low: f32, share_high: f32, root_own: f32, half_extent: f32, of_own: f32, of_nearest: f32) -> f32 {
     let root = clamp(root_absorbance, 0.0, 256.0);
     let share = peelnet_share(
-        clamp(root_absorbance, -40224.133, 40234.547), clamp(place_fraction, -2924.509, 2925.556), clamp(mean_fraction, -1657.5375, 1658.5785), clamp(share_low, -2087.3262, 2087.65), clamp(share_high, -2262.9114, 2264.5842), clamp(root_own, -5813.1367, 5814.793), clamp(half_extent, -2003.8801, 2005.4695), clamp(of_own, -1717.3046, 1719.1232), clamp(of_nearest, -1720.3542, 1722.1699));
+        clamp(root_absorbance, -46650.96, 46662.758), clamp(place_fraction, -3139.3584, 3140.751), clamp(mean_fraction, -2176.8862, 2178.2773), clamp(share_low, -1791.4802, 1791.7402), clamp(share_high, -2751.7651, 2753.417), clamp(root_own, -5687.959, 5689.5596), clamp(half_extent, -2164.8708, 2166.4324), clamp(of_own, -1736.1511, 1737.9824), clamp(of_nearest, -1725.541, 1727.3652));
     let bounds = clamp(vec2f(share_low, share_high), vec2f(0.0), vec2f(1.0));
     return exp(-root * root * mix(bounds.x, bounds.y, share));
 }

@@ -3,7 +3,7 @@
 // GLSL ES 3.00, WebGL 2. Paste it below #version 300 es and precision highp float; and precision highp int;.
 // Network: 9-13-1 (Relu hidden, Sigmoid last), 144 parameters, 130 multiply-adds. Recipe medium, seed 1, 80 epochs.
 // Answers: transmittance of what lies between a slab's known ends, exp(-absorbance * share) with absorbance = root_absorbance^2 and share in share_low .. share_high.
-// Input 0: root_absorbance (root of the absorbance between the slab's ends), 0.0 .. 20.46857 in training.
+// Input 0: root_absorbance (root of the absorbance between the slab's ends), 0.0 .. 21.25096 in training.
 // Input 1: place_fraction (of the way between the slab's ends), 0.0 .. 1.0 in training.
 // Input 2: mean_fraction (of the way between the slab's ends), 0.0 .. 1.0 in training.
 // Input 3: share_low (of the absorbance between the slab's ends), 0.0 .. 1.0 in training.
@@ -13,13 +13,13 @@
 // Input 7: of_own (absorbance between the ends, of that and the fragment's), 0.0 .. 0.9999915 in training.
 // Input 8: of_nearest (absorbance between the ends, of that and the nearer end's), 0.0 .. 1.0 in training.
 // Trained on 21565798 rows of boxes, cups, foliage, intersecting, opaque-mix, panes, sixteen-025, sixteen-050, sixteen-075, sixteen-085, sixteen-random-alpha, sixteen-random-color, smoke-100, smoke-30, synthetic (dataset f0e6c4a7cca08d560f99a5be9cbd1514bf8be352632a347602bf08363695fd29+e22e844788a454658277e87e23685b5ffa00e3ad2d48cb833cc53130eaf4d8b7).
-// Loss: training 0.000170, validation 0.000148, test 0.000164.
-// Held-out error, mean |T - T_exact|: boxes-held 0.00274, cups-held 0.00255, foliage-held 0.00091, panes-held 0.00030, sixteen-held 0.00062, smoke-held 0.00622.
+// Loss: training 0.000147, validation 0.000138, test 0.000150.
+// Held-out error, mean |T - T_exact|: boxes-held 0.00280, cups-held 0.00251, foliage-held 0.00075, panes-held 0.00025, sixteen-held 0.00059, smoke-held 0.00570.
 //
 // Self-tests, to some roundings of 32 bits; weights and colours also to those of 16-bit targets.
-// peelnet_weight(0.46555424, 0.67085797, 0.16887921, 0.7373583, 0.19208878, 0.1129206, 0.12900263, 0.43583557, 0.7663156) = 0.886321
-// peelnet_weight(0.28651604, 0.13589168, 0.26682287, 0.7078695, 0.5534122, 0.8413221, 0.6951227, 0.37161863, 0.9624051) = 0.9458716
-// peelnet_weight(2.6059449, 0.2162394, 0.7240006, 0.37958002, 0.26558614, 1.9607327, 0.5804378, 0.9097903, 0.04841405) = 0.07741144
+// peelnet_weight(0.48334956, 0.67085797, 0.16887921, 0.7373583, 0.19208878, 0.1129206, 0.12900263, 0.43583557, 0.7663156) = 0.8680153
+// peelnet_weight(0.2974678, 0.13589168, 0.26682287, 0.7078695, 0.5534122, 0.8413221, 0.6951227, 0.37161863, 0.9624051) = 0.9411046
+// peelnet_weight(2.7055542, 0.2162394, 0.7240006, 0.37958002, 0.26558614, 1.9607327, 0.5804378, 0.9097903, 0.04841405) = 0.066045314
 // Four fragments of a pixel, near 1.0, far 8.0, background 0.25, 0.5, 0.75:
 //    z 1.0, alpha 0.5, rgb 1.0, 0.0, 0.0: zeta -1.0, weight 1.0
 //    z 2.0, alpha 0.5, rgb 0.0, 1.0, 0.0: zeta -0.33333334, weight 0.5
@@ -27,21 +27,23 @@
 //    z 8.0, alpha 0.9, rgb 1.0, 1.0, 1.0: zeta 1.0, weight 0.125
 //    target bins_front: 0.17254902, 0.0, 0.14509805, 0.02745098
 //    target bins_back: 0.02745098, 0.14509805, 0.0, 0.5764706
-//    target absorbances: 1.3862944, 0.6931472, 2.302585, -0.13021414
-//    target nearest: 64928.0, -43.5625, -64768.0, 0.4473748
-//    target farthest: 1389.0, 43.40625, 65248.0, 2.302585
+//    target range: 1.0, 1.0
+//    target absorbances: 1.3862944, 0.6931472, 2.302585, -0.011217061
+//    target nearest: 64928.0, -25.28125, -64768.0, 0.42932084
+//    target farthest: 49568.0, 25.203125, 65248.0, 2.302585
 //    colour of the pixel: 0.615625, 0.36875, 0.246875
 //
 // How to draw with it. Targets may have 32 bits a channel wherever 16 are named.
-// 0. zeta = peelnet_zeta(z, near, far): z is the distance along the view axis, near and far the range of z that the bounding boxes of the transparent objects in view span, clipped to the camera's. A tight range matters more than anything else you choose. Compute zeta with this function in all passes. Its range is the same for the whole frame: peelnet_zeta_in(z, peelnet_range(near, far)) is the same value, and the range may be passed in.
+// 0. zeta = peelnet_zeta(z, near, far): z is the distance along the view axis, near and far the range of z that the bounding boxes of the transparent objects in view span, clipped to the camera's. A tight range matters more than anything else you choose. Compute zeta with this function in all passes. Its range is the same for the whole frame: peelnet_zeta_in(z, peelnet_range(near, far)) is the same value, and the range may be passed in. Where boxes show that nothing lies between two depths, use peelnet_cut(zeta, gaps) for zeta in all passes: it leaves up to two such gaps out.
 // 1. Pass "range": draw all transparent surfaces, in any order. PeelnetBins bins = peelnet_bins(alpha, zeta);
 //    bins_front: rgba8unorm, cleared to 0, blending ADD, from bins.front
 //    bins_back: rgba8unorm, cleared to 0, blending ADD, from bins.back
-// 2. Pass "statistics": draw all transparent surfaces, in any order. PeelnetStatistics s = peelnet_statistics(alpha, peelnet_in_pixel(zeta, bins_front, bins_back));
+//    range: rg8unorm, cleared to 0, blending MAX, from bins.range
+// 2. Pass "statistics": draw all transparent surfaces, in any order. PeelnetStatistics s = peelnet_statistics(alpha, peelnet_in_pixel(zeta, bins_front, bins_back, range));
 //    absorbances: rgba16float, cleared to 0, blending ADD, from s.absorbances
 //    nearest: rgba16float, cleared to -65504, -65504, -65504, 0, blending MAX for rgb, ADD for alpha, from s.nearest
 //    farthest: rgba16float, cleared to -65504, -65504, -65504, 0, blending MAX for rgb, ADD for alpha, from s.farthest
-// 3. Pass "weights": draw all transparent surfaces, in any order. float w = peelnet_fragment(alpha, peelnet_in_pixel(zeta, bins_front, bins_back), absorbances, nearest, farthest).x;
+// 3. Pass "weights": draw all transparent surfaces, in any order. float w = peelnet_fragment(alpha, peelnet_in_pixel(zeta, bins_front, bins_back, range), absorbances, nearest, farthest).x;
 //    sums: rgba16float, cleared to 0, blending ADD, from vec4(alpha * rgb, alpha) * w
 // 4. Resolve: peelnet_resolve(sums, absorbances.x + absorbances.y + absorbances.z, background) is the colour of the pixel, and its coverage in alpha.
 // - alpha is opacity, rgb the linear colour that is not multiplied by it. Resolve before tone mapping and encoding.
@@ -75,6 +77,7 @@ struct PeelnetBetween {
 struct PeelnetBins {
     vec4 front;
     vec4 back;
+    vec2 range;
 };
 struct PeelnetStatistics {
     vec4 absorbances;
@@ -82,13 +85,12 @@ struct PeelnetStatistics {
     vec4 farthest;
 };
 const float PEELNET_FAINT = 0.003921569;
-const float PEELNET_LEAST_SEEN = 0.00390625;
 const float PEELNET_BIN_LEVELS = 64.0;
 const float PEELNET_BINS = 1920.0;
 const float PEELNET_OPACITIES = 32.0;
 const float PEELNET_EMPTY = -65504.0;
-const float PEELNET_FIRST_END = 0.52;
-const float PEELNET_SECOND_END = 0.795;
+const float PEELNET_FIRST_END = 0.475;
+const float PEELNET_SECOND_END = 0.81;
 const float PEELNET_THIRD_END = 1.0;
 const float PEELNET_LAST_SLAB = 2.0;
 
@@ -135,36 +137,41 @@ float peelnet_cut(float zeta, vec4 gaps) {
 }
 
 PeelnetBins peelnet_bins(float alpha_1, float zeta_1) {
-    vec4 place_3 = vec4(clamp(((zeta_1 * 4.0) + 3.5), 0.0, 7.0));
+    vec4 place_4 = vec4(clamp(((zeta_1 * 4.0) + 3.5), 0.0, 7.0));
     float _e10 = peelnet_absorbance(alpha_1);
     float level = max(floor(((_e10 * PEELNET_BIN_LEVELS) + 0.5)), 1.0);
-    vec4 front_1 = max((vec4(1.0) - abs((place_3 - vec4(0.0, 1.0, 2.0, 3.0)))), vec4(0.0));
-    vec4 back_1 = max((vec4(1.0) - abs((place_3 - vec4(4.0, 5.0, 6.0, 7.0)))), vec4(0.0));
-    return PeelnetBins((floor(((level * front_1) + vec4(0.5))) / vec4(255.0)), (floor(((level * back_1) + vec4(0.5))) / vec4(255.0)));
+    vec4 front_2 = max((vec4(1.0) - abs((place_4 - vec4(0.0, 1.0, 2.0, 3.0)))), vec4(0.0));
+    vec4 back_2 = max((vec4(1.0) - abs((place_4 - vec4(4.0, 5.0, 6.0, 7.0)))), vec4(0.0));
+    float depth = (127.5 * (zeta_1 + 1.0));
+    return PeelnetBins((floor(((level * front_2) + vec4(0.5))) / vec4(255.0)), (floor(((level * back_2) + vec4(0.5))) / vec4(255.0)), (vec2((255.0 - floor(depth)), ceil(depth)) / vec2(255.0)));
 }
 
-vec4 peelnet_passing(float before, vec4 bins) {
+vec4 peelnet_seen_behind(float before, vec4 bins) {
     float two = (bins.x + bins.y);
-    vec4 absorbances_2 = vec4(bins.x, two, (two + bins.z), ((two + bins.z) + bins.w));
-    return exp(((vec4(before) + absorbances_2) * -3.984375));
+    vec4 levels_3 = (vec4(before) + vec4(bins.x, two, (two + bins.z), ((two + bins.z) + bins.w)));
+    return exp((levels_3 * -3.984375));
 }
 
-vec4 peelnet_shares(vec4 before_1, vec4 behind, vec4 bins_1) {
-    vec4 has_any = min((bins_1 * 255.0), vec4(1.0));
-    return (sqrt(max((before_1 - behind), vec4(0.00390625))) * has_any);
+float peelnet_up_to(float place, vec4 front, vec4 back) {
+    vec4 a = abs((vec4(place) - vec4(0.0, 1.0, 2.0, 3.0)));
+    vec4 b = abs((vec4(place) - vec4(4.0, 5.0, 6.0, 7.0)));
+    return (dot(front, (a - vec4(a.yzw, b.x))) + dot(back, (b - vec4(b.yzw, abs((place - 8.0))))));
 }
 
-float peelnet_in_pixel(float zeta_2, vec4 front, vec4 back) {
-    float place_4 = ((zeta_2 * 4.0) + 4.0);
-    vec4 none = vec4(0.0);
-    vec4 one = vec4(1.0);
-    vec4 _e12 = peelnet_passing(0.0, front);
-    vec4 _e14 = peelnet_passing(dot(front, one), back);
-    vec4 _e18 = peelnet_shares(vec4(1.0, _e12.xyz), _e12, front);
-    vec4 _e22 = peelnet_shares(vec4(_e12.w, _e14.xyz), _e14, back);
-    float passed_1 = (dot(_e18, clamp((vec4(place_4) - vec4(0.0, 1.0, 2.0, 3.0)), none, one)) + dot(_e22, clamp((vec4(place_4) - vec4(4.0, 5.0, 6.0, 7.0)), none, one)));
-    float all_ = dot((_e18 + _e22), one);
-    return ((all_ == 0.0) ? sqrt((place_4 * 0.125)) : min((passed_1 / max(all_, 1e-6)), 1.0));
+float peelnet_in_pixel(float zeta_2, vec4 front_1, vec4 back_1, vec2 range_1) {
+    float place_5 = ((zeta_2 * 4.0) + 4.0);
+    vec4 _e9 = peelnet_seen_behind(0.0, front_1);
+    vec4 _e13 = peelnet_seen_behind(dot(front_1, vec4(1.0)), back_1);
+    vec4 of_front = sqrt(abs((vec4(1.0, _e9.xyz) - _e9)));
+    vec4 of_back = sqrt(abs((vec4(_e9.w, _e13.xyz) - _e13)));
+    vec2 levels_4 = floor(((range_1 * 255.0) + vec2(0.5)));
+    float nearest_2 = (255.0 - levels_4.x);
+    float _e37 = peelnet_up_to((nearest_2 * 0.03137255), of_front, of_back);
+    float _e44 = peelnet_up_to((max(levels_4.y, (nearest_2 + 1.0)) * 0.03137255), of_front, of_back);
+    float all_ = (_e44 - _e37);
+    float _e46 = peelnet_up_to(place_5, of_front, of_back);
+    float passed_1 = ((_e46 - _e37) / max(all_, 1e-6));
+    return ((all_ == 0.0) ? sqrt((place_5 * 0.125)) : clamp(passed_1, 0.0, 1.0));
 }
 
 float peelnet_of_slab(vec4 values, float slab) {
@@ -176,8 +183,8 @@ PeelnetPlace peelnet_place(float alpha_2, float t) {
     float first_1 = ((t >= PEELNET_FIRST_END) ? 1.0 : 0.0);
     float passed_2 = ((first_1 + ((t >= PEELNET_SECOND_END) ? 1.0 : 0.0)) + ((t >= PEELNET_THIRD_END) ? 1.0 : 0.0));
     float slab_2 = min(passed_2, PEELNET_LAST_SLAB);
-    float _e27 = peelnet_of_slab(vec4(0.0, 0.52, 0.795, 1.0), slab_2);
-    float _e33 = peelnet_of_slab(vec4(0.52, 0.795, 1.0, 1.0), slab_2);
+    float _e27 = peelnet_of_slab(vec4(0.0, 0.475, 0.81, 1.0), slab_2);
+    float _e33 = peelnet_of_slab(vec4(0.475, 0.81, 1.0, 1.0), slab_2);
     float inside = ((t - _e27) / (_e33 - _e27));
     float bin_1 = min(floor((inside * PEELNET_BINS)), 1919.0);
     float opacity = floor((((_e2 / (_e2 + 1.0)) * 32.9375) + 0.5));
@@ -185,10 +192,10 @@ PeelnetPlace peelnet_place(float alpha_2, float t) {
     return PeelnetPlace(_e2, slab_2, ((2.0 * inside) - 1.0), bin_1, near_2, ((bin_1 * PEELNET_OPACITIES) + opacity));
 }
 
-vec2 peelnet_records(float alpha_3, PeelnetPlace place) {
-    vec3 _e6 = peelnet_halves(vec3(place.near, place.far, place.far));
-    vec2 levels_3 = _e6.xy;
-    return ((alpha_3 < PEELNET_FAINT) ? vec2(-65504.0) : levels_3);
+vec2 peelnet_records(float alpha_3, PeelnetPlace place_1) {
+    vec3 _e6 = peelnet_halves(vec3(place_1.near, place_1.far, place_1.far));
+    vec2 levels_5 = _e6.xy;
+    return ((alpha_3 < PEELNET_FAINT) ? vec2(-65504.0) : levels_5);
 }
 
 vec2 peelnet_absorbances_of(vec2 levels_1) {
@@ -204,20 +211,20 @@ vec4 peelnet_in_slab(float value, float slab_1, float elsewhere) {
     return vec4(((slab_1 == 0.0) ? value : elsewhere), ((slab_1 == 1.0) ? value : elsewhere), ((slab_1 == 2.0) ? value : elsewhere), ((slab_1 == 3.0) ? value : elsewhere));
 }
 
-PeelnetBetween peelnet_between(PeelnetPlace place_1, float total, float first, vec2 levels_2) {
+PeelnetBetween peelnet_between(PeelnetPlace place_2, float total, float first, vec2 levels_2) {
     bool local = false;
     bool local_1 = false;
     float begin = 0.0;
     float end = 0.0;
-    float b = place_1.absorbance;
-    float others = max((total - b), 0.0);
+    float b_1 = place_2.absorbance;
+    float others = max((total - b_1), 0.0);
     float noise = max((total * 0.0009765625), 1e-6);
     float near_back = floor((levels_2.x * 0.03125));
     float near_bin = (1919.0 - near_back);
     float near_level = (levels_2.x + ((near_bin - near_back) * PEELNET_OPACITIES));
     vec2 _e23 = peelnet_absorbances_of(levels_2);
     bool all_1 = (_e23.x > (others - (((0.019354839 * (1.0 + _e23.x)) * (1.0 + _e23.x)) + noise)));
-    float near_3 = ((near_bin > place_1.bin) ? 0.0 : (all_1 ? others : _e23.x));
+    float near_3 = ((near_bin > place_2.bin) ? 0.0 : (all_1 ? others : _e23.x));
     float far_bin = floor((levels_2.y * 0.03125));
     if (!((levels_2.y == near_level))) {
         local = (levels_2.y < 0.0);
@@ -226,7 +233,7 @@ PeelnetBetween peelnet_between(PeelnetPlace place_1, float total, float first, v
     }
     bool is_one = local;
     if (!(is_one)) {
-        local_1 = (far_bin < place_1.bin);
+        local_1 = (far_bin < place_2.bin);
     } else {
         local_1 = true;
     }
@@ -236,33 +243,33 @@ PeelnetBetween peelnet_between(PeelnetPlace place_1, float total, float first, v
     begin = _e67;
     float _e69 = peelnet_middle_of(far_bin);
     end = (is_one ? 1.0 : _e69);
-    float rest = (((total - b) - near_3) - far_2);
+    float rest = (((total - b_1) - near_3) - far_2);
     float _e79 = begin;
     float _e82 = end;
-    float moment = (((first - (b * place_1.inside)) - (near_3 * _e79)) - (far_2 * _e82));
+    float moment = (((first - (b_1 * place_2.inside)) - (near_3 * _e79)) - (far_2 * _e82));
     float _e85 = begin;
     float _e86 = begin;
-    begin = ((_e86 > place_1.inside) ? -1.0 : _e85);
+    begin = ((_e86 > place_2.inside) ? -1.0 : _e85);
     float _e91 = end;
     float _e92 = end;
-    end = ((_e92 < place_1.inside) ? 1.0 : _e91);
-    float in_front = ((near_3 * ((near_bin == place_1.bin) ? 0.5 : 1.0)) + (far_2 * ((far_bin == place_1.bin) ? 0.5 : 0.0)));
+    end = ((_e92 < place_2.inside) ? 1.0 : _e91);
+    float in_front = ((near_3 * ((near_bin == place_2.bin) ? 0.5 : 1.0)) + (far_2 * ((far_bin == place_2.bin) ? 0.5 : 0.0)));
     float _e110 = end;
     float _e111 = begin;
     float extent_1 = max((_e110 - _e111), 0.0010416667);
     float per_extent = (1.0 / extent_1);
     float _e118 = begin;
-    float x = clamp(((place_1.inside - _e118) * per_extent), 0.0, 1.0);
+    float x = clamp(((place_2.inside - _e118) * per_extent), 0.0, 1.0);
     float _e126 = begin;
     float _e127 = end;
-    float depth = clamp((moment / max(rest, noise)), _e126, _e127);
+    float depth_1 = clamp((moment / max(rest, noise)), _e126, _e127);
     float _e129 = begin;
-    float mean = clamp(((depth - _e129) * per_extent), 0.0, 1.0);
-    bool before_2 = (x < mean);
-    float bound = ((before_2 ? (1.0 - mean) : (x - mean)) / max((before_2 ? (1.0 - x) : x), 1e-6));
-    float low = (before_2 ? 0.0 : bound);
-    float high = (before_2 ? bound : 1.0);
-    return PeelnetBetween(max(rest, 0.0), x, mean, low, high, (0.5 * extent_1), b, in_front);
+    float mean = clamp(((depth_1 - _e129) * per_extent), 0.0, 1.0);
+    bool before_1 = (x < mean);
+    float bound = ((before_1 ? (1.0 - mean) : (x - mean)) / max((before_1 ? (1.0 - x) : x), 1e-6));
+    float low = (before_1 ? 0.0 : bound);
+    float high = (before_1 ? bound : 1.0);
+    return PeelnetBetween(max(rest, 0.0), x, mean, low, high, (0.5 * extent_1), b_1, in_front);
 }
 
 bool peelnet_is_kept(float own, float kept) {
@@ -281,11 +288,11 @@ float peelnet_share(float root_absorbance, float place_fraction, float mean_frac
     vec4 input_a = vec4(root_absorbance, place_fraction, mean_fraction, share_low);
     vec4 input_b = vec4(share_high, root_own, half_extent, of_own);
     vec4 input_c = vec4(of_nearest, 0.0, 0.0, 0.0);
-    vec4 layer_a_a = max((((vec4(-7.74626, -4.987284, 6.8330207, 2.6006157) + (mat4x4(vec4(0.028165719, -0.16301282, 0.12854649, -0.036809817), vec4(1.4931492, 0.060856618, -0.7634369, -1.196998), vec4(1.738851, 1.0815262, -1.3401743, -3.0486743), vec4(2.7355497, 1.2439528, -2.1798103, -1.6752619)) * input_a)) + (mat4x4(vec4(1.7174, 3.6957066, 1.8948824, -3.5197587), vec4(0.03757935, -0.3634256, 0.14968027, -1.048177), vec4(1.8326362, 4.56831, 0.88704556, -0.025302937), vec4(-0.6302577, -4.149317, -0.5698873, -1.7852333)) * input_b)) + (vec4(4.904782, 2.937603, -7.5911427, 4.8079724) * input_c.x)), vec4(0.0));
-    vec4 layer_a_b = max((((vec4(-4.8817883, -13.783739, -5.871945, -3.4807048) + (mat4x4(vec4(0.14136462, -0.018400472, 0.147474, 0.1619196), vec4(0.8862052, 1.5518938, 1.4893395, 4.4712706), vec4(0.8034912, -0.7157984, -2.165897, 1.9540117), vec4(2.7208154, 1.9447052, 0.11009571, 4.791615)) * input_a)) + (mat4x4(vec4(0.51669496, 7.406374, 8.483767, 0.14812887), vec4(0.84667283, 0.17858222, -0.5728708, -0.38876098), vec4(-0.797626, -0.08514846, -0.089822605, -0.6516477), vec4(-1.1141516, 0.3707778, -2.9017663, -0.40932256)) * input_b)) + (vec4(4.5729346, 5.9529195, 0.59769344, -1.4762163) * input_c.x)), vec4(0.0));
-    vec4 layer_a_c = max((((vec4(10.744685, 5.386589, 1.9286716, 7.1108565) + (mat4x4(vec4(0.14744893, 0.06497582, 0.06170215, 0.13458183), vec4(0.6831056, -0.626419, -1.451423, -1.0710378), vec4(-3.296951, -1.4946929, -5.3357825, 1.2166675), vec4(-4.4420633, -5.0873213, 0.7774448, -5.527652)) * input_a)) + (mat4x4(vec4(-1.7308797, -1.7830876, -4.7746954, -3.7539723), vec4(-0.074359015, -0.34981355, 1.2132453, 0.14599338), vec4(-2.1811872, 0.41846958, -1.2143759, -1.7588558), vec4(-2.5690777, -5.337838, 3.1933599, -2.0102096)) * input_b)) + (vec4(-4.9002113, 1.3711538, 1.3844, -1.5661898) * input_c.x)), vec4(0.0));
-    vec4 layer_a_d = max((((vec4(-4.1393766, 0.0, 0.0, 0.0) + (mat4x4(vec4(0.120547436, 0.0, 0.0, 0.0), vec4(-2.179513, 0.0, 0.0, 0.0), vec4(1.0191345, 0.0, 0.0, 0.0), vec4(1.4273268, 0.0, 0.0, 0.0)) * input_a)) + (mat4x4(vec4(-1.3762155, 0.0, 0.0, 0.0), vec4(1.5405763, 0.0, 0.0, 0.0), vec4(-0.94817376, 0.0, 0.0, 0.0), vec4(-1.0341878, 0.0, 0.0, 0.0)) * input_b)) + (vec4(5.3218045, 0.0, 0.0, 0.0) * input_c.x)), vec4(0.0));
-    float layer_b_a = (1.0 / (1.0 + exp(min(-(((((0.26942188 + dot(vec4(-0.63669765, 0.41556105, -0.4275528, -0.6414621), layer_a_a)) + dot(vec4(-0.36713734, 0.86803323, 1.1775542, 0.8426151), layer_a_b)) + dot(vec4(0.389859, -0.8042323, -0.78499424, -0.57645327), layer_a_c)) + (0.5059833 * layer_a_d.x))), 80.0))));
+    vec4 layer_a_a = max((((vec4(-1.4641386, -3.3562605, 8.56328, 7.9295816) + (mat4x4(vec4(-0.062875085, -0.044414904, -0.045489606, -0.07379496), vec4(1.703964, 1.899293, -1.2000672, -2.6386976), vec4(1.8144727, -1.7142202, -0.8144927, -0.71155626), vec4(0.47746012, 0.9861568, 0.8539375, 2.5413916)) * input_a)) + (mat4x4(vec4(1.5533057, 1.7421483, 0.85063446, -1.2913522), vec4(0.5555127, 0.8219148, -0.012739913, -1.4782242), vec4(-0.5184329, 4.586603, 2.1503766, -2.4249082), vec4(1.1940901, -3.0581594, -1.1037587, -1.0768601)) * input_b)) + (vec4(-1.8912773, 0.5968488, -8.25149, -0.740267) * input_c.x)), vec4(0.0));
+    vec4 layer_a_b = max((((vec4(-3.435276, -3.0695794, 3.38485, -9.666815) + (mat4x4(vec4(0.1240001, 0.050277658, -0.054266352, 0.15960346), vec4(-1.4091853, 1.1852088, 2.4092836, 4.852766), vec4(-1.7622716, -1.6526178, -3.9796207, 4.484973), vec4(2.2075722, 3.8548405, 0.8623253, 3.6745415)) * input_a)) + (mat4x4(vec4(2.202639, 5.9497824, -0.058958687, 2.6287017), vec4(1.348361, -0.5333857, -1.5144511, -0.18664494), vec4(1.7184564, -0.055434026, -0.22081658, -0.3716273), vec4(-0.40209323, -3.8325782, 1.8777025, 0.19611548)) * input_b)) + (vec4(1.7847227, 0.8313226, -2.1540985, -1.1985334) * input_c.x)), vec4(0.0));
+    vec4 layer_a_c = max((((vec4(1.0071908, 3.4967759, 5.591461, 4.5318055) + (mat4x4(vec4(-0.26753965, 0.06484478, -0.018652525, 0.08553129), vec4(1.6324673, -2.843409, -0.45813456, -0.0043214555), vec4(-3.7041008, -1.7365564, 2.6887474, -0.5723574), vec4(-3.1260092, -1.8425844, -6.1553755, -7.8002076)) * input_a)) + (mat4x4(vec4(1.7835314, -1.1375017, -2.9750838, -1.3568959), vec4(1.0672754, 0.076174654, 0.44796503, -0.3170386), vec4(-0.4925571, -1.0347719, -2.3352869, 0.3858673), vec4(-0.33531374, 0.28107768, -1.2299383, -4.0824766)) * input_b)) + (vec4(1.068785, -0.8180279, -1.8280076, -0.27818996) * input_c.x)), vec4(0.0));
+    vec4 layer_a_d = max((((vec4(12.364563, 0.0, 0.0, 0.0) + (mat4x4(vec4(0.010403197, 0.0, 0.0, 0.0), vec4(0.14919655, 0.0, 0.0, 0.0), vec4(-0.22271577, 0.0, 0.0, 0.0), vec4(-5.0166383, 0.0, 0.0, 0.0)) * input_a)) + (mat4x4(vec4(-1.8775809, 0.0, 0.0, 0.0), vec4(0.008815818, 0.0, 0.0, 0.0), vec4(-1.6784344, 0.0, 0.0, 0.0), vec4(-0.2517419, 0.0, 0.0, 0.0)) * input_b)) + (vec4(-9.882709, 0.0, 0.0, 0.0) * input_c.x)), vec4(0.0));
+    float layer_b_a = (1.0 / (1.0 + exp(min(-(((((-0.037035838 + dot(vec4(-0.68024015, 0.36019412, -0.42563558, -0.44534072), layer_a_a)) + dot(vec4(-0.47680685, 1.0096582, 0.43886814, 1.5624919), layer_a_b)) + dot(vec4(0.45026985, -0.9147628, -0.380483, -1.3764257), layer_a_c)) + (0.6037574 * layer_a_d.x))), 80.0))));
     return layer_b_a;
 }
 
@@ -294,38 +301,38 @@ float peelnet_network(PeelnetBetween between) {
     return _e24;
 }
 
-vec2 peelnet_weigh(PeelnetPlace place_2, bool counts, vec4 absorbances, vec4 firsts, vec4 nearest, vec4 farthest, float ends) {
+vec2 peelnet_weigh(PeelnetPlace place_3, bool counts, vec4 absorbances, vec4 firsts, vec4 nearest, vec4 farthest, float ends) {
     bool local_3 = false;
     bool local_4 = false;
     bool local_5 = false;
     bool local_6 = false;
     bool local_7 = false;
     vec4 sums_2 = min(absorbances, vec4(65504.0));
-    float _e11 = peelnet_of_slab(sums_2, place_2.slab);
-    float _e13 = peelnet_of_slab(firsts, place_2.slab);
+    float _e11 = peelnet_of_slab(sums_2, place_3.slab);
+    float _e13 = peelnet_of_slab(firsts, place_3.slab);
     float first_2 = clamp(_e13, -65504.0, 65504.0);
-    float _e18 = peelnet_of_slab(nearest, place_2.slab);
-    float _e20 = peelnet_of_slab(farthest, place_2.slab);
+    float _e18 = peelnet_of_slab(nearest, place_3.slab);
+    float _e20 = peelnet_of_slab(farthest, place_3.slab);
     vec2 halves_1 = vec2(_e18, _e20);
     vec3 _e24 = peelnet_levels(vec3(halves_1, halves_1.y));
     vec2 decoded = _e24.xy;
-    vec2 levels_4 = ((place_2.slab < ends) ? decoded : vec2(decoded.x, -1.0));
-    float before_3 = ((((place_2.slab > 0.0) ? sums_2.x : 0.0) + ((place_2.slab > 1.0) ? sums_2.y : 0.0)) + ((place_2.slab > 2.0) ? sums_2.z : 0.0));
+    vec2 levels_6 = ((place_3.slab < ends) ? decoded : vec2(decoded.x, -1.0));
+    float before_2 = ((((place_3.slab > 0.0) ? sums_2.x : 0.0) + ((place_3.slab > 1.0) ? sums_2.y : 0.0)) + ((place_3.slab > 2.0) ? sums_2.z : 0.0));
     if (counts) {
-        bool _e56 = peelnet_is_kept(place_2.near, levels_4.x);
+        bool _e56 = peelnet_is_kept(place_3.near, levels_6.x);
         local_3 = _e56;
     } else {
         local_3 = false;
     }
     bool is_near = local_3;
     if (counts) {
-        local_4 = (levels_4.y >= 0.0);
+        local_4 = (levels_6.y >= 0.0);
     } else {
         local_4 = false;
     }
     bool _e65 = local_4;
     if (_e65) {
-        bool _e70 = peelnet_is_kept(place_2.far, levels_4.y);
+        bool _e70 = peelnet_is_kept(place_3.far, levels_6.y);
         local_5 = _e70;
     } else {
         local_5 = false;
@@ -343,12 +350,12 @@ vec2 peelnet_weigh(PeelnetPlace place_2, bool counts, vec4 absorbances, vec4 fir
         local_7 = true;
     }
     bool known = local_7;
-    PeelnetBetween _e83 = peelnet_between(place_2, _e11, first_2, levels_4);
+    PeelnetBetween _e83 = peelnet_between(place_3, _e11, first_2, levels_6);
     float _e88 = peelnet_network(_e83);
     float share_1 = (_e83.low + ((_e83.high - _e83.low) * _e88));
-    float at_end = (is_far ? max((_e11 - place_2.absorbance), 0.0) : 0.0);
+    float at_end = (is_far ? max((_e11 - place_3.absorbance), 0.0) : 0.0);
     float inside_1 = (known ? at_end : (_e83.nearest + (_e83.absorbance * share_1)));
-    return vec2(exp(-((before_3 + inside_1))), (known ? 1.0 : 0.0));
+    return vec2(exp(-((before_2 + inside_1))), (known ? 1.0 : 0.0));
 }
 
 PeelnetStatistics peelnet_statistics(float alpha_4, float t_1) {
@@ -388,7 +395,7 @@ vec4 peelnet_resolve(vec4 sums_1, float absorbance, vec3 background_1) {
 
 float peelnet_weight(float root_absorbance_1, float place_fraction_1, float mean_fraction_1, float share_low_1, float share_high_1, float root_own_1, float half_extent_1, float of_own_1, float of_nearest_1) {
     float root = clamp(root_absorbance_1, 0.0, 256.0);
-    float _e39 = peelnet_share(clamp(root_absorbance_1, -42139.004, 42150.098), clamp(place_fraction_1, -2917.437, 2918.5132), clamp(mean_fraction_1, -1656.5862, 1657.6563), clamp(share_low_1, -2015.2238, 2015.5382), clamp(share_high_1, -2258.5388, 2260.2131), clamp(root_own_1, -5798.6147, 5800.265), clamp(half_extent_1, -2140.9082, 2142.477), clamp(of_own_1, -1612.3574, 1614.1953), clamp(of_nearest_1, -1618.6206, 1620.4541));
+    float _e39 = peelnet_share(clamp(root_absorbance_1, -46549.746, 46561.754), clamp(place_fraction_1, -3128.1426, 3129.5498), clamp(mean_fraction_1, -2148.7454, 2150.152), clamp(share_low_1, -1742.304, 1742.5583), clamp(share_high_1, -2759.7317, 2761.3855), clamp(root_own_1, -5650.0513, 5651.64), clamp(half_extent_1, -2216.933, 2218.4595), clamp(of_own_1, -1664.0962, 1665.9397), clamp(of_nearest_1, -1659.8347, 1661.6699));
     vec2 bounds = clamp(vec2(share_low_1, share_high_1), vec2(0.0), vec2(1.0));
     return exp(((-(root) * root) * mix(bounds.x, bounds.y, _e39)));
 }

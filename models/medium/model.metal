@@ -3,7 +3,7 @@
 // Metal 2.4. No Metal compiler was at hand: this text was translated from WGSL that was compiled and run, and has not been compiled itself.
 // Network: 9-13-1 (Relu hidden, Sigmoid last), 144 parameters, 130 multiply-adds. Recipe medium, seed 1, 80 epochs.
 // Answers: transmittance of what lies between a slab's known ends, exp(-absorbance * share) with absorbance = root_absorbance^2 and share in share_low .. share_high.
-// Input 0: root_absorbance (root of the absorbance between the slab's ends), 0.0 .. 20.46857 in training.
+// Input 0: root_absorbance (root of the absorbance between the slab's ends), 0.0 .. 21.25096 in training.
 // Input 1: place_fraction (of the way between the slab's ends), 0.0 .. 1.0 in training.
 // Input 2: mean_fraction (of the way between the slab's ends), 0.0 .. 1.0 in training.
 // Input 3: share_low (of the absorbance between the slab's ends), 0.0 .. 1.0 in training.
@@ -13,13 +13,13 @@
 // Input 7: of_own (absorbance between the ends, of that and the fragment's), 0.0 .. 0.9999915 in training.
 // Input 8: of_nearest (absorbance between the ends, of that and the nearer end's), 0.0 .. 1.0 in training.
 // Trained on 21565798 rows of boxes, cups, foliage, intersecting, opaque-mix, panes, sixteen-025, sixteen-050, sixteen-075, sixteen-085, sixteen-random-alpha, sixteen-random-color, smoke-100, smoke-30, synthetic (dataset f0e6c4a7cca08d560f99a5be9cbd1514bf8be352632a347602bf08363695fd29+e22e844788a454658277e87e23685b5ffa00e3ad2d48cb833cc53130eaf4d8b7).
-// Loss: training 0.000170, validation 0.000148, test 0.000164.
-// Held-out error, mean |T - T_exact|: boxes-held 0.00274, cups-held 0.00255, foliage-held 0.00091, panes-held 0.00030, sixteen-held 0.00062, smoke-held 0.00622.
+// Loss: training 0.000147, validation 0.000138, test 0.000150.
+// Held-out error, mean |T - T_exact|: boxes-held 0.00280, cups-held 0.00251, foliage-held 0.00075, panes-held 0.00025, sixteen-held 0.00059, smoke-held 0.00570.
 //
 // Self-tests, to some roundings of 32 bits; weights and colours also to those of 16-bit targets.
-// peelnet_weight(0.46555424, 0.67085797, 0.16887921, 0.7373583, 0.19208878, 0.1129206, 0.12900263, 0.43583557, 0.7663156) = 0.886321
-// peelnet_weight(0.28651604, 0.13589168, 0.26682287, 0.7078695, 0.5534122, 0.8413221, 0.6951227, 0.37161863, 0.9624051) = 0.9458716
-// peelnet_weight(2.6059449, 0.2162394, 0.7240006, 0.37958002, 0.26558614, 1.9607327, 0.5804378, 0.9097903, 0.04841405) = 0.07741144
+// peelnet_weight(0.48334956, 0.67085797, 0.16887921, 0.7373583, 0.19208878, 0.1129206, 0.12900263, 0.43583557, 0.7663156) = 0.8680153
+// peelnet_weight(0.2974678, 0.13589168, 0.26682287, 0.7078695, 0.5534122, 0.8413221, 0.6951227, 0.37161863, 0.9624051) = 0.9411046
+// peelnet_weight(2.7055542, 0.2162394, 0.7240006, 0.37958002, 0.26558614, 1.9607327, 0.5804378, 0.9097903, 0.04841405) = 0.066045314
 // Four fragments of a pixel, near 1.0, far 8.0, background 0.25, 0.5, 0.75:
 //    z 1.0, alpha 0.5, rgb 1.0, 0.0, 0.0: zeta -1.0, weight 1.0
 //    z 2.0, alpha 0.5, rgb 0.0, 1.0, 0.0: zeta -0.33333334, weight 0.5
@@ -27,21 +27,23 @@
 //    z 8.0, alpha 0.9, rgb 1.0, 1.0, 1.0: zeta 1.0, weight 0.125
 //    target bins_front: 0.17254902, 0.0, 0.14509805, 0.02745098
 //    target bins_back: 0.02745098, 0.14509805, 0.0, 0.5764706
-//    target absorbances: 1.3862944, 0.6931472, 2.302585, -0.13021414
-//    target nearest: 64928.0, -43.5625, -64768.0, 0.4473748
-//    target farthest: 1389.0, 43.40625, 65248.0, 2.302585
+//    target range: 1.0, 1.0
+//    target absorbances: 1.3862944, 0.6931472, 2.302585, -0.011217061
+//    target nearest: 64928.0, -25.28125, -64768.0, 0.42932084
+//    target farthest: 49568.0, 25.203125, 65248.0, 2.302585
 //    colour of the pixel: 0.615625, 0.36875, 0.246875
 //
 // How to draw with it. Targets may have 32 bits a channel wherever 16 are named.
-// 0. zeta = peelnet_zeta(z, near, far): z is the distance along the view axis, near and far the range of z that the bounding boxes of the transparent objects in view span, clipped to the camera's. A tight range matters more than anything else you choose. Compute zeta with this function in all passes. Its range is the same for the whole frame: peelnet_zeta_in(z, peelnet_range(near, far)) is the same value, and the range may be passed in.
+// 0. zeta = peelnet_zeta(z, near, far): z is the distance along the view axis, near and far the range of z that the bounding boxes of the transparent objects in view span, clipped to the camera's. A tight range matters more than anything else you choose. Compute zeta with this function in all passes. Its range is the same for the whole frame: peelnet_zeta_in(z, peelnet_range(near, far)) is the same value, and the range may be passed in. Where boxes show that nothing lies between two depths, use peelnet_cut(zeta, gaps) for zeta in all passes: it leaves up to two such gaps out.
 // 1. Pass "range": draw all transparent surfaces, in any order. PeelnetBins bins = peelnet_bins(alpha, zeta);
 //    bins_front: rgba8unorm, cleared to 0, blending ADD, from bins.front
 //    bins_back: rgba8unorm, cleared to 0, blending ADD, from bins.back
-// 2. Pass "statistics": draw all transparent surfaces, in any order. PeelnetStatistics s = peelnet_statistics(alpha, peelnet_in_pixel(zeta, bins_front, bins_back));
+//    range: rg8unorm, cleared to 0, blending MAX, from bins.range
+// 2. Pass "statistics": draw all transparent surfaces, in any order. PeelnetStatistics s = peelnet_statistics(alpha, peelnet_in_pixel(zeta, bins_front, bins_back, range));
 //    absorbances: rgba16float, cleared to 0, blending ADD, from s.absorbances
 //    nearest: rgba16float, cleared to -65504, -65504, -65504, 0, blending MAX for rgb, ADD for alpha, from s.nearest
 //    farthest: rgba16float, cleared to -65504, -65504, -65504, 0, blending MAX for rgb, ADD for alpha, from s.farthest
-// 3. Pass "weights": draw all transparent surfaces, in any order. float w = peelnet_fragment(alpha, peelnet_in_pixel(zeta, bins_front, bins_back), absorbances, nearest, farthest).x;
+// 3. Pass "weights": draw all transparent surfaces, in any order. float w = peelnet_fragment(alpha, peelnet_in_pixel(zeta, bins_front, bins_back, range), absorbances, nearest, farthest).x;
 //    sums: rgba16float, cleared to 0, blending ADD, from float4(alpha * rgb, alpha) * w
 // 4. Resolve: peelnet_resolve(sums, absorbances.x + absorbances.y + absorbances.z, background) is the colour of the pixel, and its coverage in alpha.
 // - alpha is opacity, rgb the linear colour that is not multiplied by it. Resolve before tone mapping and encoding.
@@ -81,6 +83,8 @@ struct PeelnetBetween {
 struct PeelnetBins {
     metal::float4 front;
     metal::float4 back;
+    metal::float2 range;
+    char _pad3[8];
 };
 struct PeelnetStatistics {
     metal::float4 absorbances;
@@ -88,13 +92,12 @@ struct PeelnetStatistics {
     metal::float4 farthest;
 };
 constant float PEELNET_FAINT = 0.003921569;
-constant float PEELNET_LEAST_SEEN = 0.00390625;
 constant float PEELNET_BIN_LEVELS = 64.0;
 constant float PEELNET_BINS = 1920.0;
 constant float PEELNET_OPACITIES = 32.0;
 constant float PEELNET_EMPTY = -65504.0;
-constant float PEELNET_FIRST_END = 0.52;
-constant float PEELNET_SECOND_END = 0.795;
+constant float PEELNET_FIRST_END = 0.475;
+constant float PEELNET_SECOND_END = 0.81;
 constant float PEELNET_THIRD_END = 1.0;
 constant float PEELNET_LAST_SLAB = 2.0;
 
@@ -166,47 +169,53 @@ PeelnetBins peelnet_bins(
     float alpha_1,
     float zeta_1
 ) {
-    metal::float4 place_3 = metal::float4(metal::clamp((zeta_1 * 4.0) + 3.5, 0.0, 7.0));
+    metal::float4 place_4 = metal::float4(metal::clamp((zeta_1 * 4.0) + 3.5, 0.0, 7.0));
     float _e10 = peelnet_absorbance(alpha_1);
     float level = metal::max(metal::floor((_e10 * PEELNET_BIN_LEVELS) + 0.5), 1.0);
-    metal::float4 front_1 = metal::max(metal::float4(1.0) - metal::abs(place_3 - metal::float4(0.0, 1.0, 2.0, 3.0)), metal::float4(0.0));
-    metal::float4 back_1 = metal::max(metal::float4(1.0) - metal::abs(place_3 - metal::float4(4.0, 5.0, 6.0, 7.0)), metal::float4(0.0));
-    return PeelnetBins {metal::floor((level * front_1) + metal::float4(0.5)) / metal::float4(255.0), metal::floor((level * back_1) + metal::float4(0.5)) / metal::float4(255.0)};
+    metal::float4 front_2 = metal::max(metal::float4(1.0) - metal::abs(place_4 - metal::float4(0.0, 1.0, 2.0, 3.0)), metal::float4(0.0));
+    metal::float4 back_2 = metal::max(metal::float4(1.0) - metal::abs(place_4 - metal::float4(4.0, 5.0, 6.0, 7.0)), metal::float4(0.0));
+    float depth = 127.5 * (zeta_1 + 1.0);
+    return PeelnetBins {metal::floor((level * front_2) + metal::float4(0.5)) / metal::float4(255.0), metal::floor((level * back_2) + metal::float4(0.5)) / metal::float4(255.0), metal::float2(255.0 - metal::floor(depth), metal::ceil(depth)) / metal::float2(255.0)};
 }
 
-metal::float4 peelnet_passing(
+metal::float4 peelnet_seen_behind(
     float before,
     metal::float4 bins
 ) {
     float two = bins.x + bins.y;
-    metal::float4 absorbances_2 = metal::float4(bins.x, two, two + bins.z, (two + bins.z) + bins.w);
-    return metal::exp((metal::float4(before) + absorbances_2) * -3.984375);
+    metal::float4 levels_3 = metal::float4(before) + metal::float4(bins.x, two, two + bins.z, (two + bins.z) + bins.w);
+    return metal::exp(levels_3 * -3.984375);
 }
 
-metal::float4 peelnet_shares(
-    metal::float4 before_1,
-    metal::float4 behind,
-    metal::float4 bins_1
+float peelnet_up_to(
+    float place,
+    metal::float4 front,
+    metal::float4 back
 ) {
-    metal::float4 has_any = metal::min(bins_1 * 255.0, metal::float4(1.0));
-    return metal::sqrt(metal::max(before_1 - behind, metal::float4(0.00390625))) * has_any;
+    metal::float4 a = metal::abs(metal::float4(place) - metal::float4(0.0, 1.0, 2.0, 3.0));
+    metal::float4 b = metal::abs(metal::float4(place) - metal::float4(4.0, 5.0, 6.0, 7.0));
+    return metal::dot(front, a - metal::float4(a.yzw, b.x)) + metal::dot(back, b - metal::float4(b.yzw, metal::abs(place - 8.0)));
 }
 
 float peelnet_in_pixel(
     float zeta_2,
-    metal::float4 front,
-    metal::float4 back
+    metal::float4 front_1,
+    metal::float4 back_1,
+    metal::float2 range_1
 ) {
-    float place_4 = (zeta_2 * 4.0) + 4.0;
-    metal::float4 none = metal::float4(0.0);
-    metal::float4 one = metal::float4(1.0);
-    metal::float4 _e12 = peelnet_passing(0.0, front);
-    metal::float4 _e14 = peelnet_passing(metal::dot(front, one), back);
-    metal::float4 _e18 = peelnet_shares(metal::float4(1.0, _e12.xyz), _e12, front);
-    metal::float4 _e22 = peelnet_shares(metal::float4(_e12.w, _e14.xyz), _e14, back);
-    float passed_1 = metal::dot(_e18, metal::clamp(metal::float4(place_4) - metal::float4(0.0, 1.0, 2.0, 3.0), none, one)) + metal::dot(_e22, metal::clamp(metal::float4(place_4) - metal::float4(4.0, 5.0, 6.0, 7.0), none, one));
-    float all = metal::dot(_e18 + _e22, one);
-    return (all == 0.0) ? metal::sqrt(place_4 * 0.125) : metal::min(passed_1 / metal::max(all, 0.000001), 1.0);
+    float place_5 = (zeta_2 * 4.0) + 4.0;
+    metal::float4 _e9 = peelnet_seen_behind(0.0, front_1);
+    metal::float4 _e13 = peelnet_seen_behind(metal::dot(front_1, metal::float4(1.0)), back_1);
+    metal::float4 of_front = metal::sqrt(metal::abs(metal::float4(1.0, _e9.xyz) - _e9));
+    metal::float4 of_back = metal::sqrt(metal::abs(metal::float4(_e9.w, _e13.xyz) - _e13));
+    metal::float2 levels_4 = metal::floor((range_1 * 255.0) + metal::float2(0.5));
+    float nearest_2 = 255.0 - levels_4.x;
+    float _e37 = peelnet_up_to(nearest_2 * 0.03137255, of_front, of_back);
+    float _e44 = peelnet_up_to(metal::max(levels_4.y, nearest_2 + 1.0) * 0.03137255, of_front, of_back);
+    float all = _e44 - _e37;
+    float _e46 = peelnet_up_to(place_5, of_front, of_back);
+    float passed_1 = (_e46 - _e37) / metal::max(all, 0.000001);
+    return (all == 0.0) ? metal::sqrt(place_5 * 0.125) : metal::clamp(passed_1, 0.0, 1.0);
 }
 
 float peelnet_of_slab(
@@ -224,8 +233,8 @@ PeelnetPlace peelnet_place(
     float first_1 = (t >= PEELNET_FIRST_END) ? 1.0 : 0.0;
     float passed_2 = (first_1 + ((t >= PEELNET_SECOND_END) ? 1.0 : 0.0)) + ((t >= PEELNET_THIRD_END) ? 1.0 : 0.0);
     float slab_2 = metal::min(passed_2, PEELNET_LAST_SLAB);
-    float _e27 = peelnet_of_slab(metal::float4(0.0, 0.52, 0.795, 1.0), slab_2);
-    float _e33 = peelnet_of_slab(metal::float4(0.52, 0.795, 1.0, 1.0), slab_2);
+    float _e27 = peelnet_of_slab(metal::float4(0.0, 0.475, 0.81, 1.0), slab_2);
+    float _e33 = peelnet_of_slab(metal::float4(0.475, 0.81, 1.0, 1.0), slab_2);
     float inside = (t - _e27) / (_e33 - _e27);
     float bin_1 = metal::min(metal::floor(inside * PEELNET_BINS), 1919.0);
     float opacity = metal::floor(((_e2 / (_e2 + 1.0)) * 32.9375) + 0.5);
@@ -235,11 +244,11 @@ PeelnetPlace peelnet_place(
 
 metal::float2 peelnet_records(
     float alpha_3,
-    PeelnetPlace place
+    PeelnetPlace place_1
 ) {
-    metal::float3 _e6 = peelnet_halves(metal::float3(place.near, place.far, place.far));
-    metal::float2 levels_3 = _e6.xy;
-    return (alpha_3 < PEELNET_FAINT) ? metal::float2(-65504.0) : levels_3;
+    metal::float3 _e6 = peelnet_halves(metal::float3(place_1.near, place_1.far, place_1.far));
+    metal::float2 levels_5 = _e6.xy;
+    return (alpha_3 < PEELNET_FAINT) ? metal::float2(-65504.0) : levels_5;
 }
 
 metal::float2 peelnet_absorbances_of(
@@ -264,7 +273,7 @@ metal::float4 peelnet_in_slab(
 }
 
 PeelnetBetween peelnet_between(
-    PeelnetPlace place_1,
+    PeelnetPlace place_2,
     float total,
     float first,
     metal::float2 levels_2
@@ -273,15 +282,15 @@ PeelnetBetween peelnet_between(
     bool local_1 = {};
     float begin = {};
     float end = {};
-    float b = place_1.absorbance;
-    float others = metal::max(total - b, 0.0);
+    float b_1 = place_2.absorbance;
+    float others = metal::max(total - b_1, 0.0);
     float noise = metal::max(total * 0.0009765625, 0.000001);
     float near_back = metal::floor(levels_2.x * 0.03125);
     float near_bin = 1919.0 - near_back;
     float near_level = levels_2.x + ((near_bin - near_back) * PEELNET_OPACITIES);
     metal::float2 _e23 = peelnet_absorbances_of(levels_2);
     bool all_1 = _e23.x > (others - (((0.019354839 * (1.0 + _e23.x)) * (1.0 + _e23.x)) + noise));
-    float near_3 = (near_bin > place_1.bin) ? 0.0 : (all_1 ? others : _e23.x);
+    float near_3 = (near_bin > place_2.bin) ? 0.0 : (all_1 ? others : _e23.x);
     float far_bin = metal::floor(levels_2.y * 0.03125);
     if (!((levels_2.y == near_level))) {
         local = levels_2.y < 0.0;
@@ -290,7 +299,7 @@ PeelnetBetween peelnet_between(
     }
     bool is_one = local;
     if (!(is_one)) {
-        local_1 = far_bin < place_1.bin;
+        local_1 = far_bin < place_2.bin;
     } else {
         local_1 = true;
     }
@@ -300,33 +309,33 @@ PeelnetBetween peelnet_between(
     begin = _e67;
     float _e69 = peelnet_middle_of(far_bin);
     end = is_one ? 1.0 : _e69;
-    float rest = ((total - b) - near_3) - far_2;
+    float rest = ((total - b_1) - near_3) - far_2;
     float _e79 = begin;
     float _e82 = end;
-    float moment = ((first - (b * place_1.inside)) - (near_3 * _e79)) - (far_2 * _e82);
+    float moment = ((first - (b_1 * place_2.inside)) - (near_3 * _e79)) - (far_2 * _e82);
     float _e85 = begin;
     float _e86 = begin;
-    begin = (_e86 > place_1.inside) ? -1.0 : _e85;
+    begin = (_e86 > place_2.inside) ? -1.0 : _e85;
     float _e91 = end;
     float _e92 = end;
-    end = (_e92 < place_1.inside) ? 1.0 : _e91;
-    float in_front = (near_3 * ((near_bin == place_1.bin) ? 0.5 : 1.0)) + (far_2 * ((far_bin == place_1.bin) ? 0.5 : 0.0));
+    end = (_e92 < place_2.inside) ? 1.0 : _e91;
+    float in_front = (near_3 * ((near_bin == place_2.bin) ? 0.5 : 1.0)) + (far_2 * ((far_bin == place_2.bin) ? 0.5 : 0.0));
     float _e110 = end;
     float _e111 = begin;
     float extent_1 = metal::max(_e110 - _e111, 0.0010416667);
     float per_extent = 1.0 / extent_1;
     float _e118 = begin;
-    float x = metal::clamp((place_1.inside - _e118) * per_extent, 0.0, 1.0);
+    float x = metal::clamp((place_2.inside - _e118) * per_extent, 0.0, 1.0);
     float _e126 = begin;
     float _e127 = end;
-    float depth = metal::clamp(moment / metal::max(rest, noise), _e126, _e127);
+    float depth_1 = metal::clamp(moment / metal::max(rest, noise), _e126, _e127);
     float _e129 = begin;
-    float mean = metal::clamp((depth - _e129) * per_extent, 0.0, 1.0);
-    bool before_2 = x < mean;
-    float bound = (before_2 ? (1.0 - mean) : (x - mean)) / metal::max(before_2 ? (1.0 - x) : x, 0.000001);
-    float low = before_2 ? 0.0 : bound;
-    float high = before_2 ? bound : 1.0;
-    return PeelnetBetween {metal::max(rest, 0.0), x, mean, low, high, 0.5 * extent_1, b, in_front};
+    float mean = metal::clamp((depth_1 - _e129) * per_extent, 0.0, 1.0);
+    bool before_1 = x < mean;
+    float bound = (before_1 ? (1.0 - mean) : (x - mean)) / metal::max(before_1 ? (1.0 - x) : x, 0.000001);
+    float low = before_1 ? 0.0 : bound;
+    float high = before_1 ? bound : 1.0;
+    return PeelnetBetween {metal::max(rest, 0.0), x, mean, low, high, 0.5 * extent_1, b_1, in_front};
 }
 
 bool peelnet_is_kept(
@@ -358,11 +367,11 @@ float peelnet_share(
     metal::float4 input_a = metal::float4(root_absorbance, place_fraction, mean_fraction, share_low);
     metal::float4 input_b = metal::float4(share_high, root_own, half_extent, of_own);
     metal::float4 input_c = metal::float4(of_nearest, 0.0, 0.0, 0.0);
-    metal::float4 layer_a_a = metal::max(((metal::float4(-7.74626, -4.987284, 6.8330207, 2.6006157) + (metal::float4x4(metal::float4(0.028165719, -0.16301282, 0.12854649, -0.036809817), metal::float4(1.4931492, 0.060856618, -0.7634369, -1.196998), metal::float4(1.738851, 1.0815262, -1.3401743, -3.0486743), metal::float4(2.7355497, 1.2439528, -2.1798103, -1.6752619)) * input_a)) + (metal::float4x4(metal::float4(1.7174, 3.6957066, 1.8948824, -3.5197587), metal::float4(0.03757935, -0.3634256, 0.14968027, -1.048177), metal::float4(1.8326362, 4.56831, 0.88704556, -0.025302937), metal::float4(-0.6302577, -4.149317, -0.5698873, -1.7852333)) * input_b)) + (metal::float4(4.904782, 2.937603, -7.5911427, 4.8079724) * input_c.x), metal::float4(0.0));
-    metal::float4 layer_a_b = metal::max(((metal::float4(-4.8817883, -13.783739, -5.871945, -3.4807048) + (metal::float4x4(metal::float4(0.14136462, -0.018400472, 0.147474, 0.1619196), metal::float4(0.8862052, 1.5518938, 1.4893395, 4.4712706), metal::float4(0.8034912, -0.7157984, -2.165897, 1.9540117), metal::float4(2.7208154, 1.9447052, 0.11009571, 4.791615)) * input_a)) + (metal::float4x4(metal::float4(0.51669496, 7.406374, 8.483767, 0.14812887), metal::float4(0.84667283, 0.17858222, -0.5728708, -0.38876098), metal::float4(-0.797626, -0.08514846, -0.089822605, -0.6516477), metal::float4(-1.1141516, 0.3707778, -2.9017663, -0.40932256)) * input_b)) + (metal::float4(4.5729346, 5.9529195, 0.59769344, -1.4762163) * input_c.x), metal::float4(0.0));
-    metal::float4 layer_a_c = metal::max(((metal::float4(10.744685, 5.386589, 1.9286716, 7.1108565) + (metal::float4x4(metal::float4(0.14744893, 0.06497582, 0.06170215, 0.13458183), metal::float4(0.6831056, -0.626419, -1.451423, -1.0710378), metal::float4(-3.296951, -1.4946929, -5.3357825, 1.2166675), metal::float4(-4.4420633, -5.0873213, 0.7774448, -5.527652)) * input_a)) + (metal::float4x4(metal::float4(-1.7308797, -1.7830876, -4.7746954, -3.7539723), metal::float4(-0.074359015, -0.34981355, 1.2132453, 0.14599338), metal::float4(-2.1811872, 0.41846958, -1.2143759, -1.7588558), metal::float4(-2.5690777, -5.337838, 3.1933599, -2.0102096)) * input_b)) + (metal::float4(-4.9002113, 1.3711538, 1.3844, -1.5661898) * input_c.x), metal::float4(0.0));
-    metal::float4 layer_a_d = metal::max(((metal::float4(-4.1393766, 0.0, 0.0, 0.0) + (metal::float4x4(metal::float4(0.120547436, 0.0, 0.0, 0.0), metal::float4(-2.179513, 0.0, 0.0, 0.0), metal::float4(1.0191345, 0.0, 0.0, 0.0), metal::float4(1.4273268, 0.0, 0.0, 0.0)) * input_a)) + (metal::float4x4(metal::float4(-1.3762155, 0.0, 0.0, 0.0), metal::float4(1.5405763, 0.0, 0.0, 0.0), metal::float4(-0.94817376, 0.0, 0.0, 0.0), metal::float4(-1.0341878, 0.0, 0.0, 0.0)) * input_b)) + (metal::float4(5.3218045, 0.0, 0.0, 0.0) * input_c.x), metal::float4(0.0));
-    float layer_b_a = 1.0 / (1.0 + metal::exp(metal::min(-(((((0.26942188 + metal::dot(metal::float4(-0.63669765, 0.41556105, -0.4275528, -0.6414621), layer_a_a)) + metal::dot(metal::float4(-0.36713734, 0.86803323, 1.1775542, 0.8426151), layer_a_b)) + metal::dot(metal::float4(0.389859, -0.8042323, -0.78499424, -0.57645327), layer_a_c)) + (0.5059833 * layer_a_d.x))), 80.0)));
+    metal::float4 layer_a_a = metal::max(((metal::float4(-1.4641386, -3.3562605, 8.56328, 7.9295816) + (metal::float4x4(metal::float4(-0.062875085, -0.044414904, -0.045489606, -0.07379496), metal::float4(1.703964, 1.899293, -1.2000672, -2.6386976), metal::float4(1.8144727, -1.7142202, -0.8144927, -0.71155626), metal::float4(0.47746012, 0.9861568, 0.8539375, 2.5413916)) * input_a)) + (metal::float4x4(metal::float4(1.5533057, 1.7421483, 0.85063446, -1.2913522), metal::float4(0.5555127, 0.8219148, -0.012739913, -1.4782242), metal::float4(-0.5184329, 4.586603, 2.1503766, -2.4249082), metal::float4(1.1940901, -3.0581594, -1.1037587, -1.0768601)) * input_b)) + (metal::float4(-1.8912773, 0.5968488, -8.25149, -0.740267) * input_c.x), metal::float4(0.0));
+    metal::float4 layer_a_b = metal::max(((metal::float4(-3.435276, -3.0695794, 3.38485, -9.666815) + (metal::float4x4(metal::float4(0.1240001, 0.050277658, -0.054266352, 0.15960346), metal::float4(-1.4091853, 1.1852088, 2.4092836, 4.852766), metal::float4(-1.7622716, -1.6526178, -3.9796207, 4.484973), metal::float4(2.2075722, 3.8548405, 0.8623253, 3.6745415)) * input_a)) + (metal::float4x4(metal::float4(2.202639, 5.9497824, -0.058958687, 2.6287017), metal::float4(1.348361, -0.5333857, -1.5144511, -0.18664494), metal::float4(1.7184564, -0.055434026, -0.22081658, -0.3716273), metal::float4(-0.40209323, -3.8325782, 1.8777025, 0.19611548)) * input_b)) + (metal::float4(1.7847227, 0.8313226, -2.1540985, -1.1985334) * input_c.x), metal::float4(0.0));
+    metal::float4 layer_a_c = metal::max(((metal::float4(1.0071908, 3.4967759, 5.591461, 4.5318055) + (metal::float4x4(metal::float4(-0.26753965, 0.06484478, -0.018652525, 0.08553129), metal::float4(1.6324673, -2.843409, -0.45813456, -0.0043214555), metal::float4(-3.7041008, -1.7365564, 2.6887474, -0.5723574), metal::float4(-3.1260092, -1.8425844, -6.1553755, -7.8002076)) * input_a)) + (metal::float4x4(metal::float4(1.7835314, -1.1375017, -2.9750838, -1.3568959), metal::float4(1.0672754, 0.076174654, 0.44796503, -0.3170386), metal::float4(-0.4925571, -1.0347719, -2.3352869, 0.3858673), metal::float4(-0.33531374, 0.28107768, -1.2299383, -4.0824766)) * input_b)) + (metal::float4(1.068785, -0.8180279, -1.8280076, -0.27818996) * input_c.x), metal::float4(0.0));
+    metal::float4 layer_a_d = metal::max(((metal::float4(12.364563, 0.0, 0.0, 0.0) + (metal::float4x4(metal::float4(0.010403197, 0.0, 0.0, 0.0), metal::float4(0.14919655, 0.0, 0.0, 0.0), metal::float4(-0.22271577, 0.0, 0.0, 0.0), metal::float4(-5.0166383, 0.0, 0.0, 0.0)) * input_a)) + (metal::float4x4(metal::float4(-1.8775809, 0.0, 0.0, 0.0), metal::float4(0.008815818, 0.0, 0.0, 0.0), metal::float4(-1.6784344, 0.0, 0.0, 0.0), metal::float4(-0.2517419, 0.0, 0.0, 0.0)) * input_b)) + (metal::float4(-9.882709, 0.0, 0.0, 0.0) * input_c.x), metal::float4(0.0));
+    float layer_b_a = 1.0 / (1.0 + metal::exp(metal::min(-(((((-0.037035838 + metal::dot(metal::float4(-0.68024015, 0.36019412, -0.42563558, -0.44534072), layer_a_a)) + metal::dot(metal::float4(-0.47680685, 1.0096582, 0.43886814, 1.5624919), layer_a_b)) + metal::dot(metal::float4(0.45026985, -0.9147628, -0.380483, -1.3764257), layer_a_c)) + (0.6037574 * layer_a_d.x))), 80.0)));
     return layer_b_a;
 }
 
@@ -374,7 +383,7 @@ float peelnet_network(
 }
 
 metal::float2 peelnet_weigh(
-    PeelnetPlace place_2,
+    PeelnetPlace place_3,
     bool counts,
     metal::float4 absorbances,
     metal::float4 firsts,
@@ -388,31 +397,31 @@ metal::float2 peelnet_weigh(
     bool local_6 = {};
     bool local_7 = {};
     metal::float4 sums_2 = metal::min(absorbances, metal::float4(65504.0));
-    float _e11 = peelnet_of_slab(sums_2, place_2.slab);
-    float _e13 = peelnet_of_slab(firsts, place_2.slab);
+    float _e11 = peelnet_of_slab(sums_2, place_3.slab);
+    float _e13 = peelnet_of_slab(firsts, place_3.slab);
     float first_2 = metal::clamp(_e13, -65504.0, 65504.0);
-    float _e18 = peelnet_of_slab(nearest, place_2.slab);
-    float _e20 = peelnet_of_slab(farthest, place_2.slab);
+    float _e18 = peelnet_of_slab(nearest, place_3.slab);
+    float _e20 = peelnet_of_slab(farthest, place_3.slab);
     metal::float2 halves_1 = metal::float2(_e18, _e20);
     metal::float3 _e24 = peelnet_levels(metal::float3(halves_1, halves_1.y));
     metal::float2 decoded = _e24.xy;
-    metal::float2 levels_4 = (place_2.slab < ends) ? decoded : metal::float2(decoded.x, -1.0);
-    float before_3 = (((place_2.slab > 0.0) ? sums_2.x : 0.0) + ((place_2.slab > 1.0) ? sums_2.y : 0.0)) + ((place_2.slab > 2.0) ? sums_2.z : 0.0);
+    metal::float2 levels_6 = (place_3.slab < ends) ? decoded : metal::float2(decoded.x, -1.0);
+    float before_2 = (((place_3.slab > 0.0) ? sums_2.x : 0.0) + ((place_3.slab > 1.0) ? sums_2.y : 0.0)) + ((place_3.slab > 2.0) ? sums_2.z : 0.0);
     if (counts) {
-        bool _e56 = peelnet_is_kept(place_2.near, levels_4.x);
+        bool _e56 = peelnet_is_kept(place_3.near, levels_6.x);
         local_3 = _e56;
     } else {
         local_3 = false;
     }
     bool is_near = local_3;
     if (counts) {
-        local_4 = levels_4.y >= 0.0;
+        local_4 = levels_6.y >= 0.0;
     } else {
         local_4 = false;
     }
     bool _e65 = local_4;
     if (_e65) {
-        bool _e70 = peelnet_is_kept(place_2.far, levels_4.y);
+        bool _e70 = peelnet_is_kept(place_3.far, levels_6.y);
         local_5 = _e70;
     } else {
         local_5 = false;
@@ -430,12 +439,12 @@ metal::float2 peelnet_weigh(
         local_7 = true;
     }
     bool known = local_7;
-    PeelnetBetween _e83 = peelnet_between(place_2, _e11, first_2, levels_4);
+    PeelnetBetween _e83 = peelnet_between(place_3, _e11, first_2, levels_6);
     float _e88 = peelnet_network(_e83);
     float share_1 = _e83.low + ((_e83.high - _e83.low) * _e88);
-    float at_end = is_far ? metal::max(_e11 - place_2.absorbance, 0.0) : 0.0;
+    float at_end = is_far ? metal::max(_e11 - place_3.absorbance, 0.0) : 0.0;
     float inside_1 = known ? at_end : (_e83.nearest + (_e83.absorbance * share_1));
-    return metal::float2(metal::exp(-((before_3 + inside_1))), known ? 1.0 : 0.0);
+    return metal::float2(metal::exp(-((before_2 + inside_1))), known ? 1.0 : 0.0);
 }
 
 PeelnetStatistics peelnet_statistics(
@@ -503,7 +512,7 @@ float peelnet_weight(
     float of_nearest_1
 ) {
     float root = metal::clamp(root_absorbance_1, 0.0, 256.0);
-    float _e39 = peelnet_share(metal::clamp(root_absorbance_1, -42139.004, 42150.098), metal::clamp(place_fraction_1, -2917.437, 2918.5132), metal::clamp(mean_fraction_1, -1656.5862, 1657.6563), metal::clamp(share_low_1, -2015.2238, 2015.5382), metal::clamp(share_high_1, -2258.5388, 2260.2131), metal::clamp(root_own_1, -5798.6147, 5800.265), metal::clamp(half_extent_1, -2140.9082, 2142.477), metal::clamp(of_own_1, -1612.3574, 1614.1953), metal::clamp(of_nearest_1, -1618.6206, 1620.4541));
+    float _e39 = peelnet_share(metal::clamp(root_absorbance_1, -46549.746, 46561.754), metal::clamp(place_fraction_1, -3128.1426, 3129.5498), metal::clamp(mean_fraction_1, -2148.7454, 2150.152), metal::clamp(share_low_1, -1742.304, 1742.5583), metal::clamp(share_high_1, -2759.7317, 2761.3855), metal::clamp(root_own_1, -5650.0513, 5651.64), metal::clamp(half_extent_1, -2216.933, 2218.4595), metal::clamp(of_own_1, -1664.0962, 1665.9397), metal::clamp(of_nearest_1, -1659.8347, 1661.6699));
     metal::float2 bounds = metal::clamp(metal::float2(share_low_1, share_high_1), metal::float2(0.0), metal::float2(1.0));
     return metal::exp((-(root) * root) * metal::mix(bounds.x, bounds.y, _e39));
 }

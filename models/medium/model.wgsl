@@ -3,7 +3,7 @@
 // WGSL, plain WebGPU. Compiled by naga, and run on a GPU against the network at every export.
 // Network: 9-13-1 (Relu hidden, Sigmoid last), 144 parameters, 130 multiply-adds. Recipe medium, seed 1, 80 epochs.
 // Answers: transmittance of what lies between a slab's known ends, exp(-absorbance * share) with absorbance = root_absorbance^2 and share in share_low .. share_high.
-// Input 0: root_absorbance (root of the absorbance between the slab's ends), 0.0 .. 20.46857 in training.
+// Input 0: root_absorbance (root of the absorbance between the slab's ends), 0.0 .. 21.25096 in training.
 // Input 1: place_fraction (of the way between the slab's ends), 0.0 .. 1.0 in training.
 // Input 2: mean_fraction (of the way between the slab's ends), 0.0 .. 1.0 in training.
 // Input 3: share_low (of the absorbance between the slab's ends), 0.0 .. 1.0 in training.
@@ -13,13 +13,13 @@
 // Input 7: of_own (absorbance between the ends, of that and the fragment's), 0.0 .. 0.9999915 in training.
 // Input 8: of_nearest (absorbance between the ends, of that and the nearer end's), 0.0 .. 1.0 in training.
 // Trained on 21565798 rows of boxes, cups, foliage, intersecting, opaque-mix, panes, sixteen-025, sixteen-050, sixteen-075, sixteen-085, sixteen-random-alpha, sixteen-random-color, smoke-100, smoke-30, synthetic (dataset f0e6c4a7cca08d560f99a5be9cbd1514bf8be352632a347602bf08363695fd29+e22e844788a454658277e87e23685b5ffa00e3ad2d48cb833cc53130eaf4d8b7).
-// Loss: training 0.000170, validation 0.000148, test 0.000164.
-// Held-out error, mean |T - T_exact|: boxes-held 0.00274, cups-held 0.00255, foliage-held 0.00091, panes-held 0.00030, sixteen-held 0.00062, smoke-held 0.00622.
+// Loss: training 0.000147, validation 0.000138, test 0.000150.
+// Held-out error, mean |T - T_exact|: boxes-held 0.00280, cups-held 0.00251, foliage-held 0.00075, panes-held 0.00025, sixteen-held 0.00059, smoke-held 0.00570.
 //
 // Self-tests, to some roundings of 32 bits; weights and colours also to those of 16-bit targets.
-// peelnet_weight(0.46555424, 0.67085797, 0.16887921, 0.7373583, 0.19208878, 0.1129206, 0.12900263, 0.43583557, 0.7663156) = 0.886321
-// peelnet_weight(0.28651604, 0.13589168, 0.26682287, 0.7078695, 0.5534122, 0.8413221, 0.6951227, 0.37161863, 0.9624051) = 0.9458716
-// peelnet_weight(2.6059449, 0.2162394, 0.7240006, 0.37958002, 0.26558614, 1.9607327, 0.5804378, 0.9097903, 0.04841405) = 0.07741144
+// peelnet_weight(0.48334956, 0.67085797, 0.16887921, 0.7373583, 0.19208878, 0.1129206, 0.12900263, 0.43583557, 0.7663156) = 0.8680153
+// peelnet_weight(0.2974678, 0.13589168, 0.26682287, 0.7078695, 0.5534122, 0.8413221, 0.6951227, 0.37161863, 0.9624051) = 0.9411046
+// peelnet_weight(2.7055542, 0.2162394, 0.7240006, 0.37958002, 0.26558614, 1.9607327, 0.5804378, 0.9097903, 0.04841405) = 0.066045314
 // Four fragments of a pixel, near 1.0, far 8.0, background 0.25, 0.5, 0.75:
 //    z 1.0, alpha 0.5, rgb 1.0, 0.0, 0.0: zeta -1.0, weight 1.0
 //    z 2.0, alpha 0.5, rgb 0.0, 1.0, 0.0: zeta -0.33333334, weight 0.5
@@ -27,21 +27,23 @@
 //    z 8.0, alpha 0.9, rgb 1.0, 1.0, 1.0: zeta 1.0, weight 0.125
 //    target bins_front: 0.17254902, 0.0, 0.14509805, 0.02745098
 //    target bins_back: 0.02745098, 0.14509805, 0.0, 0.5764706
-//    target absorbances: 1.3862944, 0.6931472, 2.302585, -0.13021414
-//    target nearest: 64928.0, -43.5625, -64768.0, 0.4473748
-//    target farthest: 1389.0, 43.40625, 65248.0, 2.302585
+//    target range: 1.0, 1.0
+//    target absorbances: 1.3862944, 0.6931472, 2.302585, -0.011217061
+//    target nearest: 64928.0, -25.28125, -64768.0, 0.42932084
+//    target farthest: 49568.0, 25.203125, 65248.0, 2.302585
 //    colour of the pixel: 0.615625, 0.36875, 0.246875
 //
 // How to draw with it. Targets may have 32 bits a channel wherever 16 are named.
-// 0. zeta = peelnet_zeta(z, near, far): z is the distance along the view axis, near and far the range of z that the bounding boxes of the transparent objects in view span, clipped to the camera's. A tight range matters more than anything else you choose. Compute zeta with this function in all passes. Its range is the same for the whole frame: peelnet_zeta_in(z, peelnet_range(near, far)) is the same value, and the range may be passed in.
+// 0. zeta = peelnet_zeta(z, near, far): z is the distance along the view axis, near and far the range of z that the bounding boxes of the transparent objects in view span, clipped to the camera's. A tight range matters more than anything else you choose. Compute zeta with this function in all passes. Its range is the same for the whole frame: peelnet_zeta_in(z, peelnet_range(near, far)) is the same value, and the range may be passed in. Where boxes show that nothing lies between two depths, use peelnet_cut(zeta, gaps) for zeta in all passes: it leaves up to two such gaps out.
 // 1. Pass "range": draw all transparent surfaces, in any order. let bins = peelnet_bins(alpha, zeta);
 //    bins_front: rgba8unorm, cleared to 0, blending ADD, from bins.front
 //    bins_back: rgba8unorm, cleared to 0, blending ADD, from bins.back
-// 2. Pass "statistics": draw all transparent surfaces, in any order. let s = peelnet_statistics(alpha, peelnet_in_pixel(zeta, bins_front, bins_back));
+//    range: rg8unorm, cleared to 0, blending MAX, from bins.range
+// 2. Pass "statistics": draw all transparent surfaces, in any order. let s = peelnet_statistics(alpha, peelnet_in_pixel(zeta, bins_front, bins_back, range));
 //    absorbances: rgba16float, cleared to 0, blending ADD, from s.absorbances
 //    nearest: rgba16float, cleared to -65504, -65504, -65504, 0, blending MAX for rgb, ADD for alpha, from s.nearest
 //    farthest: rgba16float, cleared to -65504, -65504, -65504, 0, blending MAX for rgb, ADD for alpha, from s.farthest
-// 3. Pass "weights": draw all transparent surfaces, in any order. let w = peelnet_fragment(alpha, peelnet_in_pixel(zeta, bins_front, bins_back), absorbances, nearest, farthest).x;
+// 3. Pass "weights": draw all transparent surfaces, in any order. let w = peelnet_fragment(alpha, peelnet_in_pixel(zeta, bins_front, bins_back, range), absorbances, nearest, farthest).x;
 //    sums: rgba16float, cleared to 0, blending ADD, from vec4f(alpha * rgb, alpha) * w
 // 4. Resolve: peelnet_resolve(sums, absorbances.x + absorbances.y + absorbances.z, background) is the colour of the pixel, and its coverage in alpha.
 // - alpha is opacity, rgb the linear colour that is not multiplied by it. Resolve before tone mapping and encoding.
@@ -100,8 +102,6 @@ fn peelnet_levels(halves: vec3f) -> vec3f {
 
 // Fragments of less opacity are composited, but are never a slab's nearest or farthest.
 const PEELNET_FAINT: f32 = 0.003921569;
-// What is seen of a bin that has fragments, at least: where little light passes, order still counts a little.
-const PEELNET_LEAST_SEEN: f32 = 0.00390625;
 // Levels of 8 bits that an absorbance of 1 is.
 const PEELNET_BIN_LEVELS: f32 = 64.0;
 // Bins of depth in a slab, and levels of opacity in each, that its nearest and its farthest fragment are kept with.
@@ -151,49 +151,63 @@ fn peelnet_cut(zeta: f32, gaps: vec4f) -> f32 {
     return kept * (2.0 / (2.0 - lengths.x - lengths.y)) - 1.0;
 }
 
-// Absorbances of eight bins of the frame's depth, nearest first, in 8 bits.
+// What is known of a pixel's depths, in 8 bits.
 struct PeelnetBins {
+    // Absorbances of eight bins of the frame's depth, nearest first.
     front: vec4f,
     back: vec4f,
+    // The level of the nearest depth, counted from the far end, and of the farthest.
+    range: vec2f,
 }
 
-// What a fragment adds to 8-bit targets: its absorbance, shared between the two bins whose middles it lies between, so that little changes as
-// it moves from one to the other, and in whole levels, so that no order of adding changes a sum.
+// What a fragment writes. Its absorbance is added, shared between the two bins whose middles it lies between, so that little changes as it
+// moves from one to the other, and in whole levels, so that no order of adding changes a sum. Of levels of depth the most is kept: rounded
+// down from the near end, and up from the far end.
 fn peelnet_bins(alpha: f32, zeta: f32) -> PeelnetBins {
     let place = vec4f(clamp(zeta * 4.0 + 3.5, 0.0, 7.0));
     // At least one: a bin with any fragment is not empty.
     let level = max(floor(peelnet_absorbance(alpha) * PEELNET_BIN_LEVELS + 0.5), 1.0);
     let front = max(vec4f(1.0) - abs(place - vec4f(0.0, 1.0, 2.0, 3.0)), vec4f(0.0));
     let back = max(vec4f(1.0) - abs(place - vec4f(4.0, 5.0, 6.0, 7.0)), vec4f(0.0));
-    return PeelnetBins(floor(level * front + 0.5) / 255.0, floor(level * back + 0.5) / 255.0);
+    let depth = 127.5 * (zeta + 1.0);
+    return PeelnetBins(
+        floor(level * front + 0.5) / 255.0,
+        floor(level * back + 0.5) / 255.0,
+        vec2f(255.0 - floor(depth), ceil(depth)) / 255.0,
+    );
 }
 
-// What is let through up to the far end of each of four bins behind an absorbance.
-fn peelnet_passing(before: f32, bins: vec4f) -> vec4f {
+// What is let through by each of four bins and by what is before it.
+fn peelnet_seen_behind(before: f32, bins: vec4f) -> vec4f {
     let two = bins.x + bins.y;
-    let absorbances = vec4f(bins.x, two, two + bins.z, two + bins.z + bins.w);
-    return exp((vec4f(before) + absorbances) * (-255.0 / PEELNET_BIN_LEVELS));
+    let levels = vec4f(before) + vec4f(bins.x, two, two + bins.z, two + bins.z + bins.w);
+    return exp(levels * (-255.0 / PEELNET_BIN_LEVELS));
 }
 
-// How much of the pixel's scale each of four bins takes: the root of what is seen of it, and nothing where it is empty.
-fn peelnet_shares(before: vec4f, behind: vec4f, bins: vec4f) -> vec4f {
-    let has_any = min(bins * 255.0, vec4f(1.0));
-    return sqrt(max(before - behind, vec4f(PEELNET_LEAST_SEEN))) * has_any;
+// How much of eight bins lies before a place among them: twice that, and a number that is the same for all places.
+fn peelnet_up_to(place: f32, front: vec4f, back: vec4f) -> f32 {
+    // A bin's own part is half of 1 + |place - its begin| - |place - its end|.
+    let a = abs(vec4f(place) - vec4f(0.0, 1.0, 2.0, 3.0));
+    let b = abs(vec4f(place) - vec4f(4.0, 5.0, 6.0, 7.0));
+    return dot(front, a - vec4f(a.yzw, b.x)) + dot(back, b - vec4f(b.yzw, abs(place - 8.0)));
 }
 
-// Where a depth lies in its pixel, 0 .. 1, by the absorbances of its bins. Where all are empty, it is the root of the frame's depth.
-fn peelnet_in_pixel(zeta: f32, front: vec4f, back: vec4f) -> f32 {
+// Where a depth lies in its pixel, 0 .. 1, by what is known of the pixel's depths: between its ends each bin takes as much as its length times
+// the root of what is seen of it. Where all bins are empty, it is the root of the frame's depth.
+fn peelnet_in_pixel(zeta: f32, front: vec4f, back: vec4f, range: vec2f) -> f32 {
     let place = zeta * 4.0 + 4.0;
-    let none = vec4f(0.0);
-    let one = vec4f(1.0);
-    let near = peelnet_passing(0.0, front);
-    let far = peelnet_passing(dot(front, one), back);
-    let of_front = peelnet_shares(vec4f(1.0, near.xyz), near, front);
-    let of_back = peelnet_shares(vec4f(near.w, far.xyz), far, back);
-    let passed = dot(of_front, clamp(vec4f(place) - vec4f(0.0, 1.0, 2.0, 3.0), none, one))
-        + dot(of_back, clamp(vec4f(place) - vec4f(4.0, 5.0, 6.0, 7.0), none, one));
-    let all = dot(of_front + of_back, one);
-    return select(min(passed / max(all, 1e-6), 1.0), sqrt(place * 0.125), all == 0.0);
+    let near = peelnet_seen_behind(0.0, front);
+    let far = peelnet_seen_behind(dot(front, vec4f(1.0)), back);
+    let of_front = sqrt(abs(vec4f(1.0, near.xyz) - near));
+    let of_back = sqrt(abs(vec4f(near.w, far.xyz) - far));
+    // The pixel's ends, in bins.
+    let levels = floor(range * 255.0 + 0.5);
+    let nearest = 255.0 - levels.x;
+    let begin = peelnet_up_to(nearest * (8.0 / 255.0), of_front, of_back);
+    let end = peelnet_up_to(max(levels.y, nearest + 1.0) * (8.0 / 255.0), of_front, of_back);
+    let all = end - begin;
+    let passed = (peelnet_up_to(place, of_front, of_back) - begin) / max(all, 1e-6);
+    return select(clamp(passed, 0.0, 1.0), sqrt(place * 0.125), all == 0.0);
 }
 
 // t: where in its pixel the fragment lies, 0 .. 1.
@@ -321,8 +335,8 @@ fn peelnet_weigh(
 }
 
 // Where a slab ends and the next begins, in the pixel, and the number of the last slab.
-const PEELNET_FIRST_END: f32 = 0.52;
-const PEELNET_SECOND_END: f32 = 0.795;
+const PEELNET_FIRST_END: f32 = 0.475;
+const PEELNET_SECOND_END: f32 = 0.81;
 const PEELNET_THIRD_END: f32 = 1.0;
 const PEELNET_LAST_SLAB: f32 = 2.0;
 
@@ -381,27 +395,27 @@ fn peelnet_share(root_absorbance: f32, place_fraction: f32, mean_fraction: f32, 
     let input_a = vec4f(root_absorbance, place_fraction, mean_fraction, share_low);
     let input_b = vec4f(share_high, root_own, half_extent, of_own);
     let input_c = vec4f(of_nearest, 0.0, 0.0, 0.0);
-    let layer_a_a = max(vec4f(-7.74626, -4.987284, 6.8330207, 2.6006157)
-        + mat4x4f(vec4f(0.028165719, -0.16301282, 0.12854649, -0.036809817), vec4f(1.4931492, 0.060856618, -0.7634369, -1.196998), vec4f(1.738851, 1.0815262, -1.3401743, -3.0486743), vec4f(2.7355497, 1.2439528, -2.1798103, -1.6752619)) * input_a
-        + mat4x4f(vec4f(1.7174, 3.6957066, 1.8948824, -3.5197587), vec4f(0.03757935, -0.3634256, 0.14968027, -1.048177), vec4f(1.8326362, 4.56831, 0.88704556, -0.025302937), vec4f(-0.6302577, -4.149317, -0.5698873, -1.7852333)) * input_b
-        + vec4f(4.904782, 2.937603, -7.5911427, 4.8079724) * input_c.x, vec4f(0.0));
-    let layer_a_b = max(vec4f(-4.8817883, -13.783739, -5.871945, -3.4807048)
-        + mat4x4f(vec4f(0.14136462, -0.018400472, 0.147474, 0.1619196), vec4f(0.8862052, 1.5518938, 1.4893395, 4.4712706), vec4f(0.8034912, -0.7157984, -2.165897, 1.9540117), vec4f(2.7208154, 1.9447052, 0.11009571, 4.791615)) * input_a
-        + mat4x4f(vec4f(0.51669496, 7.406374, 8.483767, 0.14812887), vec4f(0.84667283, 0.17858222, -0.5728708, -0.38876098), vec4f(-0.797626, -0.08514846, -0.089822605, -0.6516477), vec4f(-1.1141516, 0.3707778, -2.9017663, -0.40932256)) * input_b
-        + vec4f(4.5729346, 5.9529195, 0.59769344, -1.4762163) * input_c.x, vec4f(0.0));
-    let layer_a_c = max(vec4f(10.744685, 5.386589, 1.9286716, 7.1108565)
-        + mat4x4f(vec4f(0.14744893, 0.06497582, 0.06170215, 0.13458183), vec4f(0.6831056, -0.626419, -1.451423, -1.0710378), vec4f(-3.296951, -1.4946929, -5.3357825, 1.2166675), vec4f(-4.4420633, -5.0873213, 0.7774448, -5.527652)) * input_a
-        + mat4x4f(vec4f(-1.7308797, -1.7830876, -4.7746954, -3.7539723), vec4f(-0.074359015, -0.34981355, 1.2132453, 0.14599338), vec4f(-2.1811872, 0.41846958, -1.2143759, -1.7588558), vec4f(-2.5690777, -5.337838, 3.1933599, -2.0102096)) * input_b
-        + vec4f(-4.9002113, 1.3711538, 1.3844, -1.5661898) * input_c.x, vec4f(0.0));
-    let layer_a_d = max(vec4f(-4.1393766, 0.0, 0.0, 0.0)
-        + mat4x4f(vec4f(0.120547436, 0.0, 0.0, 0.0), vec4f(-2.179513, 0.0, 0.0, 0.0), vec4f(1.0191345, 0.0, 0.0, 0.0), vec4f(1.4273268, 0.0, 0.0, 0.0)) * input_a
-        + mat4x4f(vec4f(-1.3762155, 0.0, 0.0, 0.0), vec4f(1.5405763, 0.0, 0.0, 0.0), vec4f(-0.94817376, 0.0, 0.0, 0.0), vec4f(-1.0341878, 0.0, 0.0, 0.0)) * input_b
-        + vec4f(5.3218045, 0.0, 0.0, 0.0) * input_c.x, vec4f(0.0));
-    let layer_b_a = 1.0 / (1.0 + exp(min(-(0.26942188
-        + dot(vec4f(-0.63669765, 0.41556105, -0.4275528, -0.6414621), layer_a_a)
-        + dot(vec4f(-0.36713734, 0.86803323, 1.1775542, 0.8426151), layer_a_b)
-        + dot(vec4f(0.389859, -0.8042323, -0.78499424, -0.57645327), layer_a_c)
-        + 0.5059833 * layer_a_d.x), 80.0)));
+    let layer_a_a = max(vec4f(-1.4641386, -3.3562605, 8.56328, 7.9295816)
+        + mat4x4f(vec4f(-0.062875085, -0.044414904, -0.045489606, -0.07379496), vec4f(1.703964, 1.899293, -1.2000672, -2.6386976), vec4f(1.8144727, -1.7142202, -0.8144927, -0.71155626), vec4f(0.47746012, 0.9861568, 0.8539375, 2.5413916)) * input_a
+        + mat4x4f(vec4f(1.5533057, 1.7421483, 0.85063446, -1.2913522), vec4f(0.5555127, 0.8219148, -0.012739913, -1.4782242), vec4f(-0.5184329, 4.586603, 2.1503766, -2.4249082), vec4f(1.1940901, -3.0581594, -1.1037587, -1.0768601)) * input_b
+        + vec4f(-1.8912773, 0.5968488, -8.25149, -0.740267) * input_c.x, vec4f(0.0));
+    let layer_a_b = max(vec4f(-3.435276, -3.0695794, 3.38485, -9.666815)
+        + mat4x4f(vec4f(0.1240001, 0.050277658, -0.054266352, 0.15960346), vec4f(-1.4091853, 1.1852088, 2.4092836, 4.852766), vec4f(-1.7622716, -1.6526178, -3.9796207, 4.484973), vec4f(2.2075722, 3.8548405, 0.8623253, 3.6745415)) * input_a
+        + mat4x4f(vec4f(2.202639, 5.9497824, -0.058958687, 2.6287017), vec4f(1.348361, -0.5333857, -1.5144511, -0.18664494), vec4f(1.7184564, -0.055434026, -0.22081658, -0.3716273), vec4f(-0.40209323, -3.8325782, 1.8777025, 0.19611548)) * input_b
+        + vec4f(1.7847227, 0.8313226, -2.1540985, -1.1985334) * input_c.x, vec4f(0.0));
+    let layer_a_c = max(vec4f(1.0071908, 3.4967759, 5.591461, 4.5318055)
+        + mat4x4f(vec4f(-0.26753965, 0.06484478, -0.018652525, 0.08553129), vec4f(1.6324673, -2.843409, -0.45813456, -0.0043214555), vec4f(-3.7041008, -1.7365564, 2.6887474, -0.5723574), vec4f(-3.1260092, -1.8425844, -6.1553755, -7.8002076)) * input_a
+        + mat4x4f(vec4f(1.7835314, -1.1375017, -2.9750838, -1.3568959), vec4f(1.0672754, 0.076174654, 0.44796503, -0.3170386), vec4f(-0.4925571, -1.0347719, -2.3352869, 0.3858673), vec4f(-0.33531374, 0.28107768, -1.2299383, -4.0824766)) * input_b
+        + vec4f(1.068785, -0.8180279, -1.8280076, -0.27818996) * input_c.x, vec4f(0.0));
+    let layer_a_d = max(vec4f(12.364563, 0.0, 0.0, 0.0)
+        + mat4x4f(vec4f(0.010403197, 0.0, 0.0, 0.0), vec4f(0.14919655, 0.0, 0.0, 0.0), vec4f(-0.22271577, 0.0, 0.0, 0.0), vec4f(-5.0166383, 0.0, 0.0, 0.0)) * input_a
+        + mat4x4f(vec4f(-1.8775809, 0.0, 0.0, 0.0), vec4f(0.008815818, 0.0, 0.0, 0.0), vec4f(-1.6784344, 0.0, 0.0, 0.0), vec4f(-0.2517419, 0.0, 0.0, 0.0)) * input_b
+        + vec4f(-9.882709, 0.0, 0.0, 0.0) * input_c.x, vec4f(0.0));
+    let layer_b_a = 1.0 / (1.0 + exp(min(-(-0.037035838
+        + dot(vec4f(-0.68024015, 0.36019412, -0.42563558, -0.44534072), layer_a_a)
+        + dot(vec4f(-0.47680685, 1.0096582, 0.43886814, 1.5624919), layer_a_b)
+        + dot(vec4f(0.45026985, -0.9147628, -0.380483, -1.3764257), layer_a_c)
+        + 0.6037574 * layer_a_d.x), 80.0)));
     return layer_b_a;
 }
 
@@ -409,7 +423,7 @@ fn peelnet_share(root_absorbance: f32, place_fraction: f32, mean_fraction: f32, 
 fn peelnet_weight(root_absorbance: f32, place_fraction: f32, mean_fraction: f32, share_low: f32, share_high: f32, root_own: f32, half_extent: f32, of_own: f32, of_nearest: f32) -> f32 {
     let root = clamp(root_absorbance, 0.0, 256.0);
     let share = peelnet_share(
-        clamp(root_absorbance, -42139.004, 42150.098), clamp(place_fraction, -2917.437, 2918.5132), clamp(mean_fraction, -1656.5862, 1657.6562), clamp(share_low, -2015.2238, 2015.5382), clamp(share_high, -2258.5388, 2260.2131), clamp(root_own, -5798.6147, 5800.265), clamp(half_extent, -2140.9082, 2142.477), clamp(of_own, -1612.3574, 1614.1953), clamp(of_nearest, -1618.6206, 1620.4541));
+        clamp(root_absorbance, -46549.746, 46561.754), clamp(place_fraction, -3128.1426, 3129.5498), clamp(mean_fraction, -2148.7454, 2150.152), clamp(share_low, -1742.304, 1742.5583), clamp(share_high, -2759.7317, 2761.3855), clamp(root_own, -5650.0513, 5651.64), clamp(half_extent, -2216.933, 2218.4595), clamp(of_own, -1664.0962, 1665.9397), clamp(of_nearest, -1659.8347, 1661.6699));
     let bounds = clamp(vec2f(share_low, share_high), vec2f(0.0), vec2f(1.0));
     return exp(-root * root * mix(bounds.x, bounds.y, share));
 }

@@ -3,19 +3,19 @@
 // Metal 2.4. No Metal compiler was at hand: this text was translated from WGSL that was compiled and run, and has not been compiled itself.
 // Network: 5-1 (Relu hidden, Sigmoid last), 6 parameters, 5 multiply-adds. Recipe small, seed 1, 40 epochs.
 // Answers: transmittance of what lies between a slab's known ends, exp(-absorbance * share) with absorbance = root_absorbance^2 and share in share_low .. share_high.
-// Input 0: root_absorbance (root of the absorbance between the slab's ends), 0.0 .. 20.48323 in training.
+// Input 0: root_absorbance (root of the absorbance between the slab's ends), 0.0 .. 21.357683 in training.
 // Input 1: place_fraction (of the way between the slab's ends), 0.0 .. 1.0 in training.
 // Input 2: mean_fraction (of the way between the slab's ends), 0.0 .. 1.0 in training.
 // Input 3: share_low (of the absorbance between the slab's ends), 0.0 .. 1.0 in training.
 // Input 4: share_high (of the absorbance between the slab's ends), 0.0 .. 1.0 in training.
 // Trained on 21565798 rows of boxes, cups, foliage, intersecting, opaque-mix, panes, sixteen-025, sixteen-050, sixteen-075, sixteen-085, sixteen-random-alpha, sixteen-random-color, smoke-100, smoke-30, synthetic (dataset f0e6c4a7cca08d560f99a5be9cbd1514bf8be352632a347602bf08363695fd29+e22e844788a454658277e87e23685b5ffa00e3ad2d48cb833cc53130eaf4d8b7).
-// Loss: training 0.000207, validation 0.000213, test 0.000189.
-// Held-out error, mean |T - T_exact|: boxes-held 0.00457, cups-held 0.00393, foliage-held 0.00149, panes-held 0.00044, sixteen-held 0.00139, smoke-held 0.00678.
+// Loss: training 0.000189, validation 0.000174, test 0.000189.
+// Held-out error, mean |T - T_exact|: boxes-held 0.00404, cups-held 0.00323, foliage-held 0.00118, panes-held 0.00034, sixteen-held 0.00104, smoke-held 0.00646.
 //
 // Self-tests, to some roundings of 32 bits; weights and colours also to those of 16-bit targets.
-// peelnet_weight(7.9718714, 0.014353275, 0.21181071, 0.010463357, 0.22229642) = 0.30274153
-// peelnet_weight(3.1262708, 0.3421247, 0.95406777, 0.022867262, 0.49329907) = 0.42468464
-// peelnet_weight(3.6052048, 0.5225114, 0.08770603, 0.111551285, 0.022744834) = 0.27018908
+// peelnet_weight(8.3122, 0.014353275, 0.21181071, 0.010463357, 0.22229642) = 0.11433573
+// peelnet_weight(3.2597346, 0.3421247, 0.95406777, 0.022867262, 0.49329907) = 0.3541614
+// peelnet_weight(3.7591152, 0.5225114, 0.08770603, 0.111551285, 0.022744834) = 0.35908517
 // Four fragments of a pixel, near 1.0, far 8.0, background 0.25, 0.5, 0.75:
 //    z 1.0, alpha 0.5, rgb 1.0, 0.0, 0.0: zeta -1.0, weight 1.0
 //    z 2.0, alpha 0.5, rgb 0.0, 1.0, 0.0: zeta -0.33333334, weight 0.5
@@ -23,21 +23,23 @@
 //    z 8.0, alpha 0.9, rgb 1.0, 1.0, 1.0: zeta 1.0, weight 0.125
 //    target bins_front: 0.17254902, 0.0, 0.14509805, 0.02745098
 //    target bins_back: 0.02745098, 0.14509805, 0.0, 0.5764706
-//    target absorbances: 1.3862944, 0.6931472, 2.302585, -0.3242428
-//    target nearest: 64928.0, -0.39501953, -64768.0, 3.9003906
-//    target firsts: 0.29034245, 2.302585
+//    target range: 1.0, 1.0
+//    target absorbances: 1.3862944, 0.6931472, 2.302585, -0.053311266
+//    target nearest: 64928.0, -1970.0, -64768.0, 13928.0
+//    target firsts: 0.5755399, 2.302585
 //    colour of the pixel: 0.615625, 0.36875, 0.246875
 //
 // How to draw with it. Targets may have 32 bits a channel wherever 16 are named.
-// 0. zeta = peelnet_zeta(z, near, far): z is the distance along the view axis, near and far the range of z that the bounding boxes of the transparent objects in view span, clipped to the camera's. A tight range matters more than anything else you choose. Compute zeta with this function in all passes. Its range is the same for the whole frame: peelnet_zeta_in(z, peelnet_range(near, far)) is the same value, and the range may be passed in.
+// 0. zeta = peelnet_zeta(z, near, far): z is the distance along the view axis, near and far the range of z that the bounding boxes of the transparent objects in view span, clipped to the camera's. A tight range matters more than anything else you choose. Compute zeta with this function in all passes. Its range is the same for the whole frame: peelnet_zeta_in(z, peelnet_range(near, far)) is the same value, and the range may be passed in. Where boxes show that nothing lies between two depths, use peelnet_cut(zeta, gaps) for zeta in all passes: it leaves up to two such gaps out.
 // 1. Pass "range": draw all transparent surfaces, in any order. PeelnetBins bins = peelnet_bins(alpha, zeta);
 //    bins_front: rgba8unorm, cleared to 0, blending ADD, from bins.front
 //    bins_back: rgba8unorm, cleared to 0, blending ADD, from bins.back
-// 2. Pass "statistics": draw all transparent surfaces, in any order. PeelnetStatistics s = peelnet_statistics(alpha, peelnet_in_pixel(zeta, bins_front, bins_back));
+//    range: rg8unorm, cleared to 0, blending MAX, from bins.range
+// 2. Pass "statistics": draw all transparent surfaces, in any order. PeelnetStatistics s = peelnet_statistics(alpha, peelnet_in_pixel(zeta, bins_front, bins_back, range));
 //    absorbances: rgba16float, cleared to 0, blending ADD, from s.absorbances
 //    nearest: rgba16float, cleared to -65504, blending MAX, from s.nearest
 //    firsts: rg16float, cleared to 0, blending ADD, from s.firsts
-// 3. Pass "weights": draw all transparent surfaces, in any order. float w = peelnet_fragment(alpha, peelnet_in_pixel(zeta, bins_front, bins_back), absorbances, nearest, firsts).x;
+// 3. Pass "weights": draw all transparent surfaces, in any order. float w = peelnet_fragment(alpha, peelnet_in_pixel(zeta, bins_front, bins_back, range), absorbances, nearest, firsts).x;
 //    sums: rgba16float, cleared to 0, blending ADD, from float4(alpha * rgb, alpha) * w
 // 4. Resolve: peelnet_resolve(sums, absorbances.x + absorbances.y + absorbances.z, background) is the colour of the pixel, and its coverage in alpha.
 // - alpha is opacity, rgb the linear colour that is not multiplied by it. Resolve before tone mapping and encoding.
@@ -77,6 +79,8 @@ struct PeelnetBetween {
 struct PeelnetBins {
     metal::float4 front;
     metal::float4 back;
+    metal::float2 range;
+    char _pad3[8];
 };
 struct PeelnetStatistics {
     metal::float4 absorbances;
@@ -85,13 +89,12 @@ struct PeelnetStatistics {
     char _pad3[8];
 };
 constant float PEELNET_FAINT = 0.003921569;
-constant float PEELNET_LEAST_SEEN = 0.00390625;
 constant float PEELNET_BIN_LEVELS = 64.0;
 constant float PEELNET_BINS = 1920.0;
 constant float PEELNET_OPACITIES = 32.0;
 constant float PEELNET_EMPTY = -65504.0;
-constant float PEELNET_FIRST_END = 0.615;
-constant float PEELNET_SECOND_END = 0.8;
+constant float PEELNET_FIRST_END = 0.49;
+constant float PEELNET_SECOND_END = 0.77;
 constant float PEELNET_THIRD_END = 1.0;
 constant float PEELNET_LAST_SLAB = 2.0;
 
@@ -163,47 +166,53 @@ PeelnetBins peelnet_bins(
     float alpha_1,
     float zeta_1
 ) {
-    metal::float4 place_3 = metal::float4(metal::clamp((zeta_1 * 4.0) + 3.5, 0.0, 7.0));
+    metal::float4 place_4 = metal::float4(metal::clamp((zeta_1 * 4.0) + 3.5, 0.0, 7.0));
     float _e10 = peelnet_absorbance(alpha_1);
     float level = metal::max(metal::floor((_e10 * PEELNET_BIN_LEVELS) + 0.5), 1.0);
-    metal::float4 front_1 = metal::max(metal::float4(1.0) - metal::abs(place_3 - metal::float4(0.0, 1.0, 2.0, 3.0)), metal::float4(0.0));
-    metal::float4 back_1 = metal::max(metal::float4(1.0) - metal::abs(place_3 - metal::float4(4.0, 5.0, 6.0, 7.0)), metal::float4(0.0));
-    return PeelnetBins {metal::floor((level * front_1) + metal::float4(0.5)) / metal::float4(255.0), metal::floor((level * back_1) + metal::float4(0.5)) / metal::float4(255.0)};
+    metal::float4 front_2 = metal::max(metal::float4(1.0) - metal::abs(place_4 - metal::float4(0.0, 1.0, 2.0, 3.0)), metal::float4(0.0));
+    metal::float4 back_2 = metal::max(metal::float4(1.0) - metal::abs(place_4 - metal::float4(4.0, 5.0, 6.0, 7.0)), metal::float4(0.0));
+    float depth = 127.5 * (zeta_1 + 1.0);
+    return PeelnetBins {metal::floor((level * front_2) + metal::float4(0.5)) / metal::float4(255.0), metal::floor((level * back_2) + metal::float4(0.5)) / metal::float4(255.0), metal::float2(255.0 - metal::floor(depth), metal::ceil(depth)) / metal::float2(255.0)};
 }
 
-metal::float4 peelnet_passing(
+metal::float4 peelnet_seen_behind(
     float before,
     metal::float4 bins
 ) {
     float two = bins.x + bins.y;
-    metal::float4 absorbances_2 = metal::float4(bins.x, two, two + bins.z, (two + bins.z) + bins.w);
-    return metal::exp((metal::float4(before) + absorbances_2) * -3.984375);
+    metal::float4 levels_3 = metal::float4(before) + metal::float4(bins.x, two, two + bins.z, (two + bins.z) + bins.w);
+    return metal::exp(levels_3 * -3.984375);
 }
 
-metal::float4 peelnet_shares(
-    metal::float4 before_1,
-    metal::float4 behind,
-    metal::float4 bins_1
+float peelnet_up_to(
+    float place,
+    metal::float4 front,
+    metal::float4 back
 ) {
-    metal::float4 has_any = metal::min(bins_1 * 255.0, metal::float4(1.0));
-    return metal::sqrt(metal::max(before_1 - behind, metal::float4(0.00390625))) * has_any;
+    metal::float4 a = metal::abs(metal::float4(place) - metal::float4(0.0, 1.0, 2.0, 3.0));
+    metal::float4 b = metal::abs(metal::float4(place) - metal::float4(4.0, 5.0, 6.0, 7.0));
+    return metal::dot(front, a - metal::float4(a.yzw, b.x)) + metal::dot(back, b - metal::float4(b.yzw, metal::abs(place - 8.0)));
 }
 
 float peelnet_in_pixel(
     float zeta_2,
-    metal::float4 front,
-    metal::float4 back
+    metal::float4 front_1,
+    metal::float4 back_1,
+    metal::float2 range_1
 ) {
-    float place_4 = (zeta_2 * 4.0) + 4.0;
-    metal::float4 none = metal::float4(0.0);
-    metal::float4 one = metal::float4(1.0);
-    metal::float4 _e12 = peelnet_passing(0.0, front);
-    metal::float4 _e14 = peelnet_passing(metal::dot(front, one), back);
-    metal::float4 _e18 = peelnet_shares(metal::float4(1.0, _e12.xyz), _e12, front);
-    metal::float4 _e22 = peelnet_shares(metal::float4(_e12.w, _e14.xyz), _e14, back);
-    float passed_1 = metal::dot(_e18, metal::clamp(metal::float4(place_4) - metal::float4(0.0, 1.0, 2.0, 3.0), none, one)) + metal::dot(_e22, metal::clamp(metal::float4(place_4) - metal::float4(4.0, 5.0, 6.0, 7.0), none, one));
-    float all = metal::dot(_e18 + _e22, one);
-    return (all == 0.0) ? metal::sqrt(place_4 * 0.125) : metal::min(passed_1 / metal::max(all, 0.000001), 1.0);
+    float place_5 = (zeta_2 * 4.0) + 4.0;
+    metal::float4 _e9 = peelnet_seen_behind(0.0, front_1);
+    metal::float4 _e13 = peelnet_seen_behind(metal::dot(front_1, metal::float4(1.0)), back_1);
+    metal::float4 of_front = metal::sqrt(metal::abs(metal::float4(1.0, _e9.xyz) - _e9));
+    metal::float4 of_back = metal::sqrt(metal::abs(metal::float4(_e9.w, _e13.xyz) - _e13));
+    metal::float2 levels_4 = metal::floor((range_1 * 255.0) + metal::float2(0.5));
+    float nearest_2 = 255.0 - levels_4.x;
+    float _e37 = peelnet_up_to(nearest_2 * 0.03137255, of_front, of_back);
+    float _e44 = peelnet_up_to(metal::max(levels_4.y, nearest_2 + 1.0) * 0.03137255, of_front, of_back);
+    float all = _e44 - _e37;
+    float _e46 = peelnet_up_to(place_5, of_front, of_back);
+    float passed_1 = (_e46 - _e37) / metal::max(all, 0.000001);
+    return (all == 0.0) ? metal::sqrt(place_5 * 0.125) : metal::clamp(passed_1, 0.0, 1.0);
 }
 
 float peelnet_of_slab(
@@ -221,8 +230,8 @@ PeelnetPlace peelnet_place(
     float first_1 = (t >= PEELNET_FIRST_END) ? 1.0 : 0.0;
     float passed_2 = (first_1 + ((t >= PEELNET_SECOND_END) ? 1.0 : 0.0)) + ((t >= PEELNET_THIRD_END) ? 1.0 : 0.0);
     float slab_2 = metal::min(passed_2, PEELNET_LAST_SLAB);
-    float _e27 = peelnet_of_slab(metal::float4(0.0, 0.615, 0.8, 1.0), slab_2);
-    float _e33 = peelnet_of_slab(metal::float4(0.615, 0.8, 1.0, 1.0), slab_2);
+    float _e27 = peelnet_of_slab(metal::float4(0.0, 0.49, 0.77, 1.0), slab_2);
+    float _e33 = peelnet_of_slab(metal::float4(0.49, 0.77, 1.0, 1.0), slab_2);
     float inside = (t - _e27) / (_e33 - _e27);
     float bin_1 = metal::min(metal::floor(inside * PEELNET_BINS), 1919.0);
     float opacity = metal::floor(((_e2 / (_e2 + 1.0)) * 32.9375) + 0.5);
@@ -232,11 +241,11 @@ PeelnetPlace peelnet_place(
 
 metal::float2 peelnet_records(
     float alpha_3,
-    PeelnetPlace place
+    PeelnetPlace place_1
 ) {
-    metal::float3 _e6 = peelnet_halves(metal::float3(place.near, place.far, place.far));
-    metal::float2 levels_3 = _e6.xy;
-    return (alpha_3 < PEELNET_FAINT) ? metal::float2(-65504.0) : levels_3;
+    metal::float3 _e6 = peelnet_halves(metal::float3(place_1.near, place_1.far, place_1.far));
+    metal::float2 levels_5 = _e6.xy;
+    return (alpha_3 < PEELNET_FAINT) ? metal::float2(-65504.0) : levels_5;
 }
 
 metal::float2 peelnet_absorbances_of(
@@ -261,7 +270,7 @@ metal::float4 peelnet_in_slab(
 }
 
 PeelnetBetween peelnet_between(
-    PeelnetPlace place_1,
+    PeelnetPlace place_2,
     float total,
     float first,
     metal::float2 levels_2
@@ -270,15 +279,15 @@ PeelnetBetween peelnet_between(
     bool local_1 = {};
     float begin = {};
     float end = {};
-    float b = place_1.absorbance;
-    float others = metal::max(total - b, 0.0);
+    float b_1 = place_2.absorbance;
+    float others = metal::max(total - b_1, 0.0);
     float noise = metal::max(total * 0.0009765625, 0.000001);
     float near_back = metal::floor(levels_2.x * 0.03125);
     float near_bin = 1919.0 - near_back;
     float near_level = levels_2.x + ((near_bin - near_back) * PEELNET_OPACITIES);
     metal::float2 _e23 = peelnet_absorbances_of(levels_2);
     bool all_1 = _e23.x > (others - (((0.019354839 * (1.0 + _e23.x)) * (1.0 + _e23.x)) + noise));
-    float near_3 = (near_bin > place_1.bin) ? 0.0 : (all_1 ? others : _e23.x);
+    float near_3 = (near_bin > place_2.bin) ? 0.0 : (all_1 ? others : _e23.x);
     float far_bin = metal::floor(levels_2.y * 0.03125);
     if (!((levels_2.y == near_level))) {
         local = levels_2.y < 0.0;
@@ -287,7 +296,7 @@ PeelnetBetween peelnet_between(
     }
     bool is_one = local;
     if (!(is_one)) {
-        local_1 = far_bin < place_1.bin;
+        local_1 = far_bin < place_2.bin;
     } else {
         local_1 = true;
     }
@@ -297,33 +306,33 @@ PeelnetBetween peelnet_between(
     begin = _e67;
     float _e69 = peelnet_middle_of(far_bin);
     end = is_one ? 1.0 : _e69;
-    float rest = ((total - b) - near_3) - far_2;
+    float rest = ((total - b_1) - near_3) - far_2;
     float _e79 = begin;
     float _e82 = end;
-    float moment = ((first - (b * place_1.inside)) - (near_3 * _e79)) - (far_2 * _e82);
+    float moment = ((first - (b_1 * place_2.inside)) - (near_3 * _e79)) - (far_2 * _e82);
     float _e85 = begin;
     float _e86 = begin;
-    begin = (_e86 > place_1.inside) ? -1.0 : _e85;
+    begin = (_e86 > place_2.inside) ? -1.0 : _e85;
     float _e91 = end;
     float _e92 = end;
-    end = (_e92 < place_1.inside) ? 1.0 : _e91;
-    float in_front = (near_3 * ((near_bin == place_1.bin) ? 0.5 : 1.0)) + (far_2 * ((far_bin == place_1.bin) ? 0.5 : 0.0));
+    end = (_e92 < place_2.inside) ? 1.0 : _e91;
+    float in_front = (near_3 * ((near_bin == place_2.bin) ? 0.5 : 1.0)) + (far_2 * ((far_bin == place_2.bin) ? 0.5 : 0.0));
     float _e110 = end;
     float _e111 = begin;
     float extent_1 = metal::max(_e110 - _e111, 0.0010416667);
     float per_extent = 1.0 / extent_1;
     float _e118 = begin;
-    float x = metal::clamp((place_1.inside - _e118) * per_extent, 0.0, 1.0);
+    float x = metal::clamp((place_2.inside - _e118) * per_extent, 0.0, 1.0);
     float _e126 = begin;
     float _e127 = end;
-    float depth = metal::clamp(moment / metal::max(rest, noise), _e126, _e127);
+    float depth_1 = metal::clamp(moment / metal::max(rest, noise), _e126, _e127);
     float _e129 = begin;
-    float mean = metal::clamp((depth - _e129) * per_extent, 0.0, 1.0);
-    bool before_2 = x < mean;
-    float bound = (before_2 ? (1.0 - mean) : (x - mean)) / metal::max(before_2 ? (1.0 - x) : x, 0.000001);
-    float low = before_2 ? 0.0 : bound;
-    float high = before_2 ? bound : 1.0;
-    return PeelnetBetween {metal::max(rest, 0.0), x, mean, low, high, 0.5 * extent_1, b, in_front};
+    float mean = metal::clamp((depth_1 - _e129) * per_extent, 0.0, 1.0);
+    bool before_1 = x < mean;
+    float bound = (before_1 ? (1.0 - mean) : (x - mean)) / metal::max(before_1 ? (1.0 - x) : x, 0.000001);
+    float low = before_1 ? 0.0 : bound;
+    float high = before_1 ? bound : 1.0;
+    return PeelnetBetween {metal::max(rest, 0.0), x, mean, low, high, 0.5 * extent_1, b_1, in_front};
 }
 
 bool peelnet_is_kept(
@@ -350,7 +359,7 @@ float peelnet_share(
 ) {
     metal::float4 input_a = metal::float4(root_absorbance, place_fraction, mean_fraction, share_low);
     metal::float4 input_b = metal::float4(share_high, 0.0, 0.0, 0.0);
-    float layer_a_a = 1.0 / (1.0 + metal::exp(metal::min(-(((-2.403729 + metal::dot(metal::float4(-0.14455654, 1.2940259, -0.37559903, 2.4289906), input_a)) + (1.785607 * input_b.x))), 80.0)));
+    float layer_a_a = 1.0 / (1.0 + metal::exp(metal::min(-(((-1.2840182 + metal::dot(metal::float4(-0.10227359, 2.064883, -1.067868, 3.8891916), input_a)) + (0.35571918 * input_b.x))), 80.0)));
     return layer_a_a;
 }
 
@@ -362,7 +371,7 @@ float peelnet_network(
 }
 
 metal::float2 peelnet_weigh(
-    PeelnetPlace place_2,
+    PeelnetPlace place_3,
     bool counts,
     metal::float4 absorbances,
     metal::float4 firsts,
@@ -376,31 +385,31 @@ metal::float2 peelnet_weigh(
     bool local_6 = {};
     bool local_7 = {};
     metal::float4 sums_2 = metal::min(absorbances, metal::float4(65504.0));
-    float _e11 = peelnet_of_slab(sums_2, place_2.slab);
-    float _e13 = peelnet_of_slab(firsts, place_2.slab);
+    float _e11 = peelnet_of_slab(sums_2, place_3.slab);
+    float _e13 = peelnet_of_slab(firsts, place_3.slab);
     float first_2 = metal::clamp(_e13, -65504.0, 65504.0);
-    float _e18 = peelnet_of_slab(nearest, place_2.slab);
-    float _e20 = peelnet_of_slab(farthest, place_2.slab);
+    float _e18 = peelnet_of_slab(nearest, place_3.slab);
+    float _e20 = peelnet_of_slab(farthest, place_3.slab);
     metal::float2 halves_1 = metal::float2(_e18, _e20);
     metal::float3 _e24 = peelnet_levels(metal::float3(halves_1, halves_1.y));
     metal::float2 decoded = _e24.xy;
-    metal::float2 levels_4 = (place_2.slab < ends) ? decoded : metal::float2(decoded.x, -1.0);
-    float before_3 = (((place_2.slab > 0.0) ? sums_2.x : 0.0) + ((place_2.slab > 1.0) ? sums_2.y : 0.0)) + ((place_2.slab > 2.0) ? sums_2.z : 0.0);
+    metal::float2 levels_6 = (place_3.slab < ends) ? decoded : metal::float2(decoded.x, -1.0);
+    float before_2 = (((place_3.slab > 0.0) ? sums_2.x : 0.0) + ((place_3.slab > 1.0) ? sums_2.y : 0.0)) + ((place_3.slab > 2.0) ? sums_2.z : 0.0);
     if (counts) {
-        bool _e56 = peelnet_is_kept(place_2.near, levels_4.x);
+        bool _e56 = peelnet_is_kept(place_3.near, levels_6.x);
         local_3 = _e56;
     } else {
         local_3 = false;
     }
     bool is_near = local_3;
     if (counts) {
-        local_4 = levels_4.y >= 0.0;
+        local_4 = levels_6.y >= 0.0;
     } else {
         local_4 = false;
     }
     bool _e65 = local_4;
     if (_e65) {
-        bool _e70 = peelnet_is_kept(place_2.far, levels_4.y);
+        bool _e70 = peelnet_is_kept(place_3.far, levels_6.y);
         local_5 = _e70;
     } else {
         local_5 = false;
@@ -418,12 +427,12 @@ metal::float2 peelnet_weigh(
         local_7 = true;
     }
     bool known = local_7;
-    PeelnetBetween _e83 = peelnet_between(place_2, _e11, first_2, levels_4);
+    PeelnetBetween _e83 = peelnet_between(place_3, _e11, first_2, levels_6);
     float _e88 = peelnet_network(_e83);
     float share_1 = _e83.low + ((_e83.high - _e83.low) * _e88);
-    float at_end = is_far ? metal::max(_e11 - place_2.absorbance, 0.0) : 0.0;
+    float at_end = is_far ? metal::max(_e11 - place_3.absorbance, 0.0) : 0.0;
     float inside_1 = known ? at_end : (_e83.nearest + (_e83.absorbance * share_1));
-    return metal::float2(metal::exp(-((before_3 + inside_1))), known ? 1.0 : 0.0);
+    return metal::float2(metal::exp(-((before_2 + inside_1))), known ? 1.0 : 0.0);
 }
 
 PeelnetStatistics peelnet_statistics(
@@ -488,7 +497,7 @@ float peelnet_weight(
     float share_high_1
 ) {
     float root = metal::clamp(root_absorbance_1, 0.0, 256.0);
-    float _e23 = peelnet_share(metal::clamp(root_absorbance_1, -41742.938, 41753.6), metal::clamp(place_fraction_1, -2877.6074, 2878.6577), metal::clamp(mean_fraction_1, -1645.1031, 1646.1398), metal::clamp(share_low_1, -2094.314, 2094.6392), metal::clamp(share_high_1, -2211.9712, 2213.6538));
+    float _e23 = peelnet_share(metal::clamp(root_absorbance_1, -47155.3, 47167.48), metal::clamp(place_fraction_1, -3108.6145, 3110.0657), metal::clamp(mean_fraction_1, -2194.5725, 2196.0022), metal::clamp(share_low_1, -1815.2799, 1815.5402), metal::clamp(share_high_1, -2762.597, 2764.2634));
     metal::float2 bounds = metal::clamp(metal::float2(share_low_1, share_high_1), metal::float2(0.0), metal::float2(1.0));
     return metal::exp((-(root) * root) * metal::mix(bounds.x, bounds.y, _e23));
 }

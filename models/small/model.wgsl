@@ -3,19 +3,19 @@
 // WGSL, plain WebGPU. Compiled by naga, and run on a GPU against the network at every export.
 // Network: 5-1 (Relu hidden, Sigmoid last), 6 parameters, 5 multiply-adds. Recipe small, seed 1, 40 epochs.
 // Answers: transmittance of what lies between a slab's known ends, exp(-absorbance * share) with absorbance = root_absorbance^2 and share in share_low .. share_high.
-// Input 0: root_absorbance (root of the absorbance between the slab's ends), 0.0 .. 20.48323 in training.
+// Input 0: root_absorbance (root of the absorbance between the slab's ends), 0.0 .. 21.357683 in training.
 // Input 1: place_fraction (of the way between the slab's ends), 0.0 .. 1.0 in training.
 // Input 2: mean_fraction (of the way between the slab's ends), 0.0 .. 1.0 in training.
 // Input 3: share_low (of the absorbance between the slab's ends), 0.0 .. 1.0 in training.
 // Input 4: share_high (of the absorbance between the slab's ends), 0.0 .. 1.0 in training.
 // Trained on 21565798 rows of boxes, cups, foliage, intersecting, opaque-mix, panes, sixteen-025, sixteen-050, sixteen-075, sixteen-085, sixteen-random-alpha, sixteen-random-color, smoke-100, smoke-30, synthetic (dataset f0e6c4a7cca08d560f99a5be9cbd1514bf8be352632a347602bf08363695fd29+e22e844788a454658277e87e23685b5ffa00e3ad2d48cb833cc53130eaf4d8b7).
-// Loss: training 0.000207, validation 0.000213, test 0.000189.
-// Held-out error, mean |T - T_exact|: boxes-held 0.00457, cups-held 0.00393, foliage-held 0.00149, panes-held 0.00044, sixteen-held 0.00139, smoke-held 0.00678.
+// Loss: training 0.000189, validation 0.000174, test 0.000189.
+// Held-out error, mean |T - T_exact|: boxes-held 0.00404, cups-held 0.00323, foliage-held 0.00118, panes-held 0.00034, sixteen-held 0.00104, smoke-held 0.00646.
 //
 // Self-tests, to some roundings of 32 bits; weights and colours also to those of 16-bit targets.
-// peelnet_weight(7.9718714, 0.014353275, 0.21181071, 0.010463357, 0.22229642) = 0.30274153
-// peelnet_weight(3.1262708, 0.3421247, 0.95406777, 0.022867262, 0.49329907) = 0.42468464
-// peelnet_weight(3.6052048, 0.5225114, 0.08770603, 0.111551285, 0.022744834) = 0.27018908
+// peelnet_weight(8.3122, 0.014353275, 0.21181071, 0.010463357, 0.22229642) = 0.11433573
+// peelnet_weight(3.2597346, 0.3421247, 0.95406777, 0.022867262, 0.49329907) = 0.3541614
+// peelnet_weight(3.7591152, 0.5225114, 0.08770603, 0.111551285, 0.022744834) = 0.35908517
 // Four fragments of a pixel, near 1.0, far 8.0, background 0.25, 0.5, 0.75:
 //    z 1.0, alpha 0.5, rgb 1.0, 0.0, 0.0: zeta -1.0, weight 1.0
 //    z 2.0, alpha 0.5, rgb 0.0, 1.0, 0.0: zeta -0.33333334, weight 0.5
@@ -23,21 +23,23 @@
 //    z 8.0, alpha 0.9, rgb 1.0, 1.0, 1.0: zeta 1.0, weight 0.125
 //    target bins_front: 0.17254902, 0.0, 0.14509805, 0.02745098
 //    target bins_back: 0.02745098, 0.14509805, 0.0, 0.5764706
-//    target absorbances: 1.3862944, 0.6931472, 2.302585, -0.3242428
-//    target nearest: 64928.0, -0.39501953, -64768.0, 3.9003906
-//    target firsts: 0.29034245, 2.302585
+//    target range: 1.0, 1.0
+//    target absorbances: 1.3862944, 0.6931472, 2.302585, -0.053311266
+//    target nearest: 64928.0, -1970.0, -64768.0, 13928.0
+//    target firsts: 0.5755399, 2.302585
 //    colour of the pixel: 0.615625, 0.36875, 0.246875
 //
 // How to draw with it. Targets may have 32 bits a channel wherever 16 are named.
-// 0. zeta = peelnet_zeta(z, near, far): z is the distance along the view axis, near and far the range of z that the bounding boxes of the transparent objects in view span, clipped to the camera's. A tight range matters more than anything else you choose. Compute zeta with this function in all passes. Its range is the same for the whole frame: peelnet_zeta_in(z, peelnet_range(near, far)) is the same value, and the range may be passed in.
+// 0. zeta = peelnet_zeta(z, near, far): z is the distance along the view axis, near and far the range of z that the bounding boxes of the transparent objects in view span, clipped to the camera's. A tight range matters more than anything else you choose. Compute zeta with this function in all passes. Its range is the same for the whole frame: peelnet_zeta_in(z, peelnet_range(near, far)) is the same value, and the range may be passed in. Where boxes show that nothing lies between two depths, use peelnet_cut(zeta, gaps) for zeta in all passes: it leaves up to two such gaps out.
 // 1. Pass "range": draw all transparent surfaces, in any order. let bins = peelnet_bins(alpha, zeta);
 //    bins_front: rgba8unorm, cleared to 0, blending ADD, from bins.front
 //    bins_back: rgba8unorm, cleared to 0, blending ADD, from bins.back
-// 2. Pass "statistics": draw all transparent surfaces, in any order. let s = peelnet_statistics(alpha, peelnet_in_pixel(zeta, bins_front, bins_back));
+//    range: rg8unorm, cleared to 0, blending MAX, from bins.range
+// 2. Pass "statistics": draw all transparent surfaces, in any order. let s = peelnet_statistics(alpha, peelnet_in_pixel(zeta, bins_front, bins_back, range));
 //    absorbances: rgba16float, cleared to 0, blending ADD, from s.absorbances
 //    nearest: rgba16float, cleared to -65504, blending MAX, from s.nearest
 //    firsts: rg16float, cleared to 0, blending ADD, from s.firsts
-// 3. Pass "weights": draw all transparent surfaces, in any order. let w = peelnet_fragment(alpha, peelnet_in_pixel(zeta, bins_front, bins_back), absorbances, nearest, firsts).x;
+// 3. Pass "weights": draw all transparent surfaces, in any order. let w = peelnet_fragment(alpha, peelnet_in_pixel(zeta, bins_front, bins_back, range), absorbances, nearest, firsts).x;
 //    sums: rgba16float, cleared to 0, blending ADD, from vec4f(alpha * rgb, alpha) * w
 // 4. Resolve: peelnet_resolve(sums, absorbances.x + absorbances.y + absorbances.z, background) is the colour of the pixel, and its coverage in alpha.
 // - alpha is opacity, rgb the linear colour that is not multiplied by it. Resolve before tone mapping and encoding.
@@ -96,8 +98,6 @@ fn peelnet_levels(halves: vec3f) -> vec3f {
 
 // Fragments of less opacity are composited, but are never a slab's nearest or farthest.
 const PEELNET_FAINT: f32 = 0.003921569;
-// What is seen of a bin that has fragments, at least: where little light passes, order still counts a little.
-const PEELNET_LEAST_SEEN: f32 = 0.00390625;
 // Levels of 8 bits that an absorbance of 1 is.
 const PEELNET_BIN_LEVELS: f32 = 64.0;
 // Bins of depth in a slab, and levels of opacity in each, that its nearest and its farthest fragment are kept with.
@@ -147,49 +147,63 @@ fn peelnet_cut(zeta: f32, gaps: vec4f) -> f32 {
     return kept * (2.0 / (2.0 - lengths.x - lengths.y)) - 1.0;
 }
 
-// Absorbances of eight bins of the frame's depth, nearest first, in 8 bits.
+// What is known of a pixel's depths, in 8 bits.
 struct PeelnetBins {
+    // Absorbances of eight bins of the frame's depth, nearest first.
     front: vec4f,
     back: vec4f,
+    // The level of the nearest depth, counted from the far end, and of the farthest.
+    range: vec2f,
 }
 
-// What a fragment adds to 8-bit targets: its absorbance, shared between the two bins whose middles it lies between, so that little changes as
-// it moves from one to the other, and in whole levels, so that no order of adding changes a sum.
+// What a fragment writes. Its absorbance is added, shared between the two bins whose middles it lies between, so that little changes as it
+// moves from one to the other, and in whole levels, so that no order of adding changes a sum. Of levels of depth the most is kept: rounded
+// down from the near end, and up from the far end.
 fn peelnet_bins(alpha: f32, zeta: f32) -> PeelnetBins {
     let place = vec4f(clamp(zeta * 4.0 + 3.5, 0.0, 7.0));
     // At least one: a bin with any fragment is not empty.
     let level = max(floor(peelnet_absorbance(alpha) * PEELNET_BIN_LEVELS + 0.5), 1.0);
     let front = max(vec4f(1.0) - abs(place - vec4f(0.0, 1.0, 2.0, 3.0)), vec4f(0.0));
     let back = max(vec4f(1.0) - abs(place - vec4f(4.0, 5.0, 6.0, 7.0)), vec4f(0.0));
-    return PeelnetBins(floor(level * front + 0.5) / 255.0, floor(level * back + 0.5) / 255.0);
+    let depth = 127.5 * (zeta + 1.0);
+    return PeelnetBins(
+        floor(level * front + 0.5) / 255.0,
+        floor(level * back + 0.5) / 255.0,
+        vec2f(255.0 - floor(depth), ceil(depth)) / 255.0,
+    );
 }
 
-// What is let through up to the far end of each of four bins behind an absorbance.
-fn peelnet_passing(before: f32, bins: vec4f) -> vec4f {
+// What is let through by each of four bins and by what is before it.
+fn peelnet_seen_behind(before: f32, bins: vec4f) -> vec4f {
     let two = bins.x + bins.y;
-    let absorbances = vec4f(bins.x, two, two + bins.z, two + bins.z + bins.w);
-    return exp((vec4f(before) + absorbances) * (-255.0 / PEELNET_BIN_LEVELS));
+    let levels = vec4f(before) + vec4f(bins.x, two, two + bins.z, two + bins.z + bins.w);
+    return exp(levels * (-255.0 / PEELNET_BIN_LEVELS));
 }
 
-// How much of the pixel's scale each of four bins takes: the root of what is seen of it, and nothing where it is empty.
-fn peelnet_shares(before: vec4f, behind: vec4f, bins: vec4f) -> vec4f {
-    let has_any = min(bins * 255.0, vec4f(1.0));
-    return sqrt(max(before - behind, vec4f(PEELNET_LEAST_SEEN))) * has_any;
+// How much of eight bins lies before a place among them: twice that, and a number that is the same for all places.
+fn peelnet_up_to(place: f32, front: vec4f, back: vec4f) -> f32 {
+    // A bin's own part is half of 1 + |place - its begin| - |place - its end|.
+    let a = abs(vec4f(place) - vec4f(0.0, 1.0, 2.0, 3.0));
+    let b = abs(vec4f(place) - vec4f(4.0, 5.0, 6.0, 7.0));
+    return dot(front, a - vec4f(a.yzw, b.x)) + dot(back, b - vec4f(b.yzw, abs(place - 8.0)));
 }
 
-// Where a depth lies in its pixel, 0 .. 1, by the absorbances of its bins. Where all are empty, it is the root of the frame's depth.
-fn peelnet_in_pixel(zeta: f32, front: vec4f, back: vec4f) -> f32 {
+// Where a depth lies in its pixel, 0 .. 1, by what is known of the pixel's depths: between its ends each bin takes as much as its length times
+// the root of what is seen of it. Where all bins are empty, it is the root of the frame's depth.
+fn peelnet_in_pixel(zeta: f32, front: vec4f, back: vec4f, range: vec2f) -> f32 {
     let place = zeta * 4.0 + 4.0;
-    let none = vec4f(0.0);
-    let one = vec4f(1.0);
-    let near = peelnet_passing(0.0, front);
-    let far = peelnet_passing(dot(front, one), back);
-    let of_front = peelnet_shares(vec4f(1.0, near.xyz), near, front);
-    let of_back = peelnet_shares(vec4f(near.w, far.xyz), far, back);
-    let passed = dot(of_front, clamp(vec4f(place) - vec4f(0.0, 1.0, 2.0, 3.0), none, one))
-        + dot(of_back, clamp(vec4f(place) - vec4f(4.0, 5.0, 6.0, 7.0), none, one));
-    let all = dot(of_front + of_back, one);
-    return select(min(passed / max(all, 1e-6), 1.0), sqrt(place * 0.125), all == 0.0);
+    let near = peelnet_seen_behind(0.0, front);
+    let far = peelnet_seen_behind(dot(front, vec4f(1.0)), back);
+    let of_front = sqrt(abs(vec4f(1.0, near.xyz) - near));
+    let of_back = sqrt(abs(vec4f(near.w, far.xyz) - far));
+    // The pixel's ends, in bins.
+    let levels = floor(range * 255.0 + 0.5);
+    let nearest = 255.0 - levels.x;
+    let begin = peelnet_up_to(nearest * (8.0 / 255.0), of_front, of_back);
+    let end = peelnet_up_to(max(levels.y, nearest + 1.0) * (8.0 / 255.0), of_front, of_back);
+    let all = end - begin;
+    let passed = (peelnet_up_to(place, of_front, of_back) - begin) / max(all, 1e-6);
+    return select(clamp(passed, 0.0, 1.0), sqrt(place * 0.125), all == 0.0);
 }
 
 // t: where in its pixel the fragment lies, 0 .. 1.
@@ -317,8 +331,8 @@ fn peelnet_weigh(
 }
 
 // Where a slab ends and the next begins, in the pixel, and the number of the last slab.
-const PEELNET_FIRST_END: f32 = 0.615;
-const PEELNET_SECOND_END: f32 = 0.8;
+const PEELNET_FIRST_END: f32 = 0.49;
+const PEELNET_SECOND_END: f32 = 0.77;
 const PEELNET_THIRD_END: f32 = 1.0;
 const PEELNET_LAST_SLAB: f32 = 2.0;
 
@@ -373,9 +387,9 @@ fn peelnet_network(between: PeelnetBetween) -> f32 {
 fn peelnet_share(root_absorbance: f32, place_fraction: f32, mean_fraction: f32, share_low: f32, share_high: f32) -> f32 {
     let input_a = vec4f(root_absorbance, place_fraction, mean_fraction, share_low);
     let input_b = vec4f(share_high, 0.0, 0.0, 0.0);
-    let layer_a_a = 1.0 / (1.0 + exp(min(-(-2.403729
-        + dot(vec4f(-0.14455654, 1.2940259, -0.37559903, 2.4289906), input_a)
-        + 1.785607 * input_b.x), 80.0)));
+    let layer_a_a = 1.0 / (1.0 + exp(min(-(-1.2840182
+        + dot(vec4f(-0.10227359, 2.064883, -1.067868, 3.8891916), input_a)
+        + 0.35571918 * input_b.x), 80.0)));
     return layer_a_a;
 }
 
@@ -383,7 +397,7 @@ fn peelnet_share(root_absorbance: f32, place_fraction: f32, mean_fraction: f32, 
 fn peelnet_weight(root_absorbance: f32, place_fraction: f32, mean_fraction: f32, share_low: f32, share_high: f32) -> f32 {
     let root = clamp(root_absorbance, 0.0, 256.0);
     let share = peelnet_share(
-        clamp(root_absorbance, -41742.938, 41753.6), clamp(place_fraction, -2877.6074, 2878.6577), clamp(mean_fraction, -1645.1031, 1646.1398), clamp(share_low, -2094.314, 2094.6392), clamp(share_high, -2211.9712, 2213.6538));
+        clamp(root_absorbance, -47155.3, 47167.48), clamp(place_fraction, -3108.6145, 3110.0657), clamp(mean_fraction, -2194.5725, 2196.0022), clamp(share_low, -1815.2799, 1815.5402), clamp(share_high, -2762.597, 2764.2634));
     let bounds = clamp(vec2f(share_low, share_high), vec2f(0.0), vec2f(1.0));
     return exp(-root * root * mix(bounds.x, bounds.y, share));
 }

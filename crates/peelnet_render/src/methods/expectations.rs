@@ -2,7 +2,6 @@
 //! failures that are known.
 
 use super::{parameter::Precision, spec::MethodSpec};
-use crate::gpu::wgpu;
 use peelnet_core::{
     absorbance::DepthWarp,
     fragment::{Fragment, points},
@@ -191,8 +190,7 @@ impl fmt::Display for Property {
 
 /// A property that a method does not have in some stress cases.
 ///
-/// One that follows from the method's mathematics is declared for all adapters; one that depends on how an adapter rounds or blends,
-/// for the one that it was seen on.
+/// They were listed on Mesa's software rasteriser. One that depends on how an adapter rounds or blends may hold on another.
 #[derive(Clone, Copy, Debug)]
 pub struct KnownFailure {
     /// The property that does not hold.
@@ -203,8 +201,6 @@ pub struct KnownFailure {
     pub when: fn(&MethodSpec) -> bool,
     /// Why, with its source.
     pub reason: &'static str,
-    /// Whether it was seen on Mesa's software rasteriser alone.
-    on_llvmpipe: bool,
 }
 
 impl KnownFailure {
@@ -213,19 +209,13 @@ impl KnownFailure {
         self.cases.split_whitespace()
     }
 
-    /// The failure that is known of a method's property in a case on an adapter.
-    pub fn find(
-        method: &MethodSpec,
-        case: &str,
-        property: Property,
-        adapter: &wgpu::AdapterInfo,
-    ) -> Option<&'static Self> {
+    /// The failure that is known of a method's property in a case.
+    pub fn find(method: &MethodSpec, case: &str, property: Property) -> Option<&'static Self> {
         let mut known = method.method().expectations.known_failures.iter();
         known.find(|failure| {
             failure.property == property
                 && failure.cases().any(|c| c == case)
                 && (failure.when)(method)
-                && (!failure.on_llvmpipe || is_llvmpipe(adapter))
         })
     }
 
@@ -236,21 +226,12 @@ impl KnownFailure {
             cases,
             when: |_| true,
             reason,
-            on_llvmpipe: false,
         }
     }
 
     /// The same failure with some parameters only.
     pub(crate) const fn when(self, when: fn(&MethodSpec) -> bool) -> Self {
         Self { when, ..self }
-    }
-
-    /// The same failure where it was seen only: it depends on how that adapter rounds when it blends.
-    pub(crate) const fn seen_on_llvmpipe(self) -> Self {
-        Self {
-            on_llvmpipe: true,
-            ..self
-        }
     }
 
     /// What lies behind nearly opaque layers shows.
@@ -266,26 +247,20 @@ impl KnownFailure {
     /// Sums of hundreds of terms in half floats.
     pub(crate) const fn swallowed(cases: &'static str) -> Self {
         let reason = "half floats: a sum of hundreds of terms swallows what is small beside it";
-        Self::new(Property::Hull, cases, reason)
-            .when(half_sums)
-            .seen_on_llvmpipe()
+        Self::new(Property::Hull, cases, reason).when(half_sums)
     }
 
     /// Sums of half floats that depend on the order in which they are rounded.
     pub(crate) const fn reordered(cases: &'static str) -> Self {
         let reason =
             "half floats: every order of drawing rounds a sum of many or of large terms otherwise";
-        Self::new(Property::Order, cases, reason)
-            .when(half_sums)
-            .seen_on_llvmpipe()
+        Self::new(Property::Order, cases, reason).when(half_sums)
     }
 
     /// Statistics in half floats, whose roundings are magnified where a transmittance is made of them.
     pub(crate) const fn unsettled(property: Property, cases: &'static str) -> Self {
         let reason = "16-bit statistics: what is reconstructed from them magnifies their roundings, and every order of drawing has others";
-        Self::new(property, cases, reason)
-            .when(half_statistics)
-            .seen_on_llvmpipe()
+        Self::new(property, cases, reason).when(half_statistics)
     }
 
     /// Sums of large weights in half floats.
@@ -298,12 +273,6 @@ impl KnownFailure {
     pub(crate) const BLIND: Self = Self::translucent(
         "a weight of depth alone, or of depth and sums, does not know what lies in front (McGuire & Bavoil 2013, section 5)",
     );
-}
-
-fn is_llvmpipe(info: &wgpu::AdapterInfo) -> bool {
-    let kind = (info.backend, info.device_type);
-    let driver = format!("{} {}", info.driver, info.driver_info).to_lowercase();
-    kind == (wgpu::Backend::Vulkan, wgpu::DeviceType::Cpu) && driver.contains("llvmpipe")
 }
 
 pub(crate) fn half_sums(spec: &MethodSpec) -> bool {

@@ -45,8 +45,7 @@ const ROUNDED_OTHERWISE: KnownFailure = KnownFailure::new(
     "high-alpha",
     "depths are rounded otherwise, and a sum in half floats falls on the other side of a rounding (docs/learned-weights.md)",
 )
-.when(half_sums)
-.seen_on_llvmpipe();
+.when(half_sums);
 
 pub(super) const SMALL: Expectations = ANCHORED.failing(&[
     KnownFailure::swallowed("deep"),

@@ -30,9 +30,7 @@ pub(super) const METHOD: Expectations = Expectations {
             "apart alpha-near-one alpha-one coplanar deep far grazing high-alpha intersecting moving-camera passing thin-slab two-layers wide-range",
             IN_SCENE_UNITS,
         ),
-        KnownFailure::new(Property::Scale, "alpha-tiny", IN_SCENE_UNITS)
-            .when(half_sums)
-            .seen_on_llvmpipe(),
+        KnownFailure::new(Property::Scale, "alpha-tiny", IN_SCENE_UNITS).when(half_sums),
         KnownFailure::new(
             Property::Transmittance,
             "isolated two-layers coplanar",

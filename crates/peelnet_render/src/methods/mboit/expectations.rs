@@ -26,9 +26,7 @@ const BLURRED: KnownFailure =
 const fn jumping(cases: &'static str) -> KnownFailure {
     let reason =
         "16-bit moments without the paper's quantisation: roots jump where they come close";
-    KnownFailure::new(Property::Steady, cases, reason)
-        .when(half_statistics)
-        .seen_on_llvmpipe()
+    KnownFailure::new(Property::Steady, cases, reason).when(half_statistics)
 }
 
 pub(super) const ESTIMATED: Expectations = Expectations {
@@ -59,7 +57,7 @@ pub(super) const FOUR: Expectations = ESTIMATED.failing(&[
 
 pub(super) const SIX: Expectations = ESTIMATED.failing(&[
     KnownFailure::swallowed("deep"),
-    BLURRED.when(half_statistics).seen_on_llvmpipe(),
+    BLURRED.when(half_statistics),
     jumping("passing moving-camera"),
     KnownFailure::unsettled(Property::Transmittance, "isolated two-layers"),
     KnownFailure::unsettled(
@@ -71,14 +69,13 @@ pub(super) const SIX: Expectations = ESTIMATED.failing(&[
         "passing wide-range",
         "six moments in 32 bits: where points come close, roundings of the sums move the others",
     )
-    .when(|s| !half_statistics(s))
-    .seen_on_llvmpipe(),
+    .when(|s| !half_statistics(s)),
 ]);
 
 pub(super) const EIGHT: Expectations = ESTIMATED.failing(&[
     KnownFailure::swallowed("deep"),
     KnownFailure::swallowed("near-overflow").when(|s| own_out(s) && half_sums(s)),
-    BLURRED.when(half_statistics).seen_on_llvmpipe(),
+    BLURRED.when(half_statistics),
     jumping("passing moving-camera"),
     KnownFailure::unsettled(Property::Transmittance, "isolated two-layers"),
     KnownFailure::unsettled(
@@ -97,19 +94,16 @@ pub(super) const TRIGONOMETRIC: Expectations = ESTIMATED.failing(&[
         "two-layers",
         "sines and cosines of close layers in 32 bits: roundings of the sums move the points; a bias of 1e-3 hides it",
     )
-    .when(|s| !own_out(s) && !half_statistics(s))
-    .seen_on_llvmpipe(),
+    .when(|s| !own_out(s) && !half_statistics(s)),
     KnownFailure::coincident(
         "sines and cosines of coincident pairs in 32 bits: roundings of the sums move the points",
     )
-    .when(|s| !half_statistics(s))
-    .seen_on_llvmpipe(),
+    .when(|s| !half_statistics(s)),
     KnownFailure::new(
         Property::Order,
         "intersecting moving-camera",
         "roundings of the sums move the points where surfaces cross, in 32 bits as well",
-    )
-    .seen_on_llvmpipe(),
+    ),
     KnownFailure::unsettled(Property::Order, "deep emissive high-alpha passing"),
     KnownFailure::unsettled(Property::Order, "apart")
         .when(|s| s.number() == 3 && half_statistics(s)),

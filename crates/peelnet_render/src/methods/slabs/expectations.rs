@@ -29,8 +29,7 @@ const ROUNDED_OTHERWISE: KnownFailure = KnownFailure::new(
     Property::Scale,
     "thin-slab",
     "depths are rounded otherwise, and of layers that differ by a few roundings another is the nearest",
-)
-.seen_on_llvmpipe();
+);
 
 const COINCIDENT: KnownFailure = KnownFailure::new(
     Property::Transmittance,
@@ -47,13 +46,18 @@ pub(super) const METHOD: Expectations = SLABS.failing(&[
 
 pub(super) const SMALL: Expectations = SLABS.failing(&[
     KnownFailure::swallowed("deep"),
-    ROUNDED_OTHERWISE.when(is_of_pixel),
+    KnownFailure::swallowed("alpha-tiny").when(is_of_pixel),
 ]);
 
-pub(super) const MEDIUM: Expectations = SLABS.failing(&[KnownFailure::swallowed("deep")]);
+pub(super) const MEDIUM: Expectations = SLABS.failing(&[
+    KnownFailure::swallowed("deep"),
+    BORDERS.when(is_of_pixel),
+    ROUNDED_OTHERWISE.when(is_of_pixel),
+    KnownFailure::unsettled(Property::Order, "thin-slab").when(is_of_pixel),
+]);
 
 pub(super) const LARGE: Expectations = SLABS.failing(&[
     KnownFailure::swallowed("deep"),
-    KnownFailure::swallowed("alpha-tiny").when(is_of_pixel),
     BORDERS.when(is_of_pixel),
+    ROUNDED_OTHERWISE.when(is_of_pixel),
 ]);

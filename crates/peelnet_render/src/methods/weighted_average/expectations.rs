@@ -15,8 +15,7 @@ pub(super) const METHOD: Expectations = Expectations {
             "apart",
             "its coverage is a power of a mean, which magnifies a rounding of it by the number of layers",
         )
-        .when(|s| !half_sums(s))
-        .seen_on_llvmpipe(),
+        .when(|s| !half_sums(s)),
         KnownFailure::BLIND,
     ],
     ..Expectations::DEFAULT
