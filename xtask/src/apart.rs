@@ -1,6 +1,6 @@
-//! The held-out scenes with a surface apart from all others, and one table of what that does to methods.
+//! Scenes with a surface apart from all others, and one table of what that does to methods.
 
-use crate::{product::scene_files, root};
+use crate::root;
 use std::fs;
 
 /// Names of the kinds, how far the surface is from the eye, of the distance to what the first view looks at, and its opacity; none at 0.
@@ -51,9 +51,8 @@ fn with_square(text: &str, kind: &str, share: f64, alpha: f64) -> Option<String>
     Some(text.lines().map(line).collect::<String>() + &square)
 }
 
-/// Writes the held-out scenes with a surface of this kind; their paths from the root.
-pub fn scenes(kind: &str) -> Result<Vec<String>, String> {
-    let files = scene_files(|name| name.ends_with("-held"))?;
+/// Writes scenes with a surface of this kind; their paths from the root.
+pub fn scenes(kind: &str, files: Vec<String>) -> Result<Vec<String>, String> {
     let found = KINDS.iter().find(|(name, ..)| *name == kind);
     let &(_, share, alpha) = found.ok_or_else(|| format!("no surface apart is called {kind}"))?;
     if alpha == 0.0 {

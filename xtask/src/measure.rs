@@ -22,7 +22,7 @@ const APART_METHODS: &str = "abuffer,wboit-eq9,mboit4,mboit6,wavelet-3:bounds=pi
 /// The thesis's recipe runs at a quarter of its pixels, with as many rows: the whole takes twenty minutes.
 const STEPS: &str = "
     stress | stress | stress.csv.xz stress.md
-    held-out | bench <held-out> --size 512x384 --views 2 --frames 3 | results.json.xz table.md pareto.svg pareto-mean.svg
+    held-out | bench <held-out> --size 512x384 --views 1 --frames 3 | results.json.xz table.md pareto.svg pareto-mean.svg
     validation | bench <validation> --size 512x384 --views 1 --frames 3 | results.json.xz table.md
     apart-none | bench <apart none> --size 256x192 --views 1 --frames 0 --methods <apart> | table.md
     apart-near | bench <apart near> --size 256x192 --views 1 --frames 0 --methods <apart> | table.md
@@ -45,20 +45,23 @@ fn steps() -> Vec<[&'static str; 3]> {
     steps.collect()
 }
 
+/// The scenes that no network learns from.
+fn held_out() -> Result<Vec<String>, String> {
+    scene_files(|name| name.ends_with("-held"))
+}
+
 /// A step's command with scenes and methods in their places.
 fn filled(line: &str) -> Result<String, String> {
     let extract = "extract data/scenes/sixteen-050.toml --size 1024x768 --json";
-    // Those that no network learns from.
-    let held_out = scene_files(|name| name.ends_with("-held"))?;
     let mut line = line.replace("<apart>", APART_METHODS);
     for (kind, ..) in apart::KINDS {
         let name = format!("<apart {kind}>");
         if line.contains(&name) {
-            line = line.replace(&name, &apart::scenes(kind)?.join(" "));
+            line = line.replace(&name, &apart::scenes(kind, held_out()?)?.join(" "));
         }
     }
     Ok(line
-        .replace("<held-out>", &held_out.join(" "))
+        .replace("<held-out>", &held_out()?.join(" "))
         .replace("<validation>", &VALIDATION_SCENES.map(scene_file).join(" "))
         .replace("<path>", PATH_METHODS)
         .replace("<extract>", extract))

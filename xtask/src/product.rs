@@ -1,6 +1,8 @@
 //! What runs the program itself: the demo, and the shipped networks.
 
-use crate::{Outcome, captured, program, program_in_root, root, run, setup::ensure_driver, start};
+use crate::{
+    Outcome, apart, captured, program, program_in_root, root, run, setup::ensure_driver, start,
+};
 use std::{env, fs, path::PathBuf, process::Command};
 
 /// `peelnet` as cargo builds it, for commands whose words are parted by spaces.
@@ -82,9 +84,6 @@ const FAMILIES: [&str; 8] = [
     "window-held",
 ];
 
-/// Training scenes of five kinds, which judge designs that were trained without them.
-const ACROSS: [&str; 5] = ["boxes", "cups", "foliage", "panes", "smoke-30"];
-
 /// Makes everything in `models/` from the shipped scenes and the seed.
 pub fn train_models() -> Outcome {
     // Built once: networks that change on the way would make cargo build it again.
@@ -129,34 +128,38 @@ fn train(program: &Program, recipe: &str, budget: &str) -> Outcome {
     Ok(())
 }
 
-/// Compares designs of slabs by what networks of them do on every fourth scene that is not held out; they learn from the others. Those resemble one
-/// another: the five scenes of a second run are apart from what it trains on.
+/// Compares designs of slabs by what networks of them do on every fourth scene that is not held out, and on the same with a surface apart; they
+/// learn from the others.
 pub fn designs() -> Outcome {
     let program = Program::given_or_built("")?;
     let _ = fs::remove_dir_all(root().join("out/search"));
     program.run("extract --synthetic 204800 --out out/search/synthetic")?;
     let all = scene_files(|name| !name.ends_with("-held"))?;
-    let (validation, training): (Vec<_>, Vec<_>) =
+    let (judges, training): (Vec<_>, Vec<_>) =
         all.into_iter().enumerate().partition(|(k, _)| k % 4 == 3);
-    let names = |list: Vec<(usize, String)>| list.into_iter().map(|(_, file)| file).collect();
-    let [validation, training]: [Vec<String>; 2] = [names(validation), names(training)];
-    let judge = |training: &[String], judges: &[String], peeled: &str, out: &str| {
+    let [judges, training] =
+        [judges, training].map(|list| list.into_iter().map(|(_, file)| file).collect::<Vec<_>>());
+    program.run(&format!(
+        "extract {} --size 128x96 --augment 3 --pixels 0.25 --out out/search/peeled",
+        training.join(" ")
+    ))?;
+    let mut apart = Vec::new();
+    for (kind, _, alpha) in apart::KINDS {
+        if alpha > 0.0 {
+            apart.extend(apart::scenes(kind, judges.clone())?);
+        }
+    }
+    for (judges, out, views) in [
+        (judges, "designs", ""),
+        (apart, "designs/apart", "--views 1"),
+    ] {
         program.run(&format!(
-            "extract {} --size 128x96 --augment 3 --pixels 0.25 --out {peeled}",
-            training.join(" ")
-        ))?;
-        program.run(&format!(
-            "bench designs out/search/synthetic,{peeled} {} --max-rows 1200000 --size 256x192 \
-             --out docs/results/llvmpipe-xeon-2cores/{out}",
+            "bench designs out/search/synthetic,out/search/peeled {} --max-rows 1200000 --size 256x192 {views} \
+             --out docs/results/llvmpipe-epyc-2cores/{out}",
             judges.join(" ")
-        ))
-    };
-    judge(&training, &validation, "out/search/peeled", "designs")?;
-    let across = ACROSS.map(scene_file);
-    let mut others = [training, validation].concat();
-    others.retain(|file| !across.contains(file));
-    let peeled = "out/search/peeled-across";
-    judge(&others, &across, peeled, "designs/across")
+        ))?;
+    }
+    Ok(())
 }
 
 pub fn scene_file(name: &str) -> String {

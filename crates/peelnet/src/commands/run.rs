@@ -97,7 +97,9 @@ pub(super) fn run(context: &Context<'_>, args: &RunArgs) -> Result<(), Failure> 
     let (dataset, summary) = run.extract(share)?;
     // The dataset and the model are new from now on: what is reported of older ones must not stay beside them if this run ends early.
     for name in Results::<ThesisRun>::files() {
-        let _ = std::fs::remove_file(args.out.join(name));
+        let file = args.out.join(name);
+        peelnet_core::files::remove_replaced(&file)
+            .map_err(|e| Failure::failed(format!("{}: {e}", shown(&file))))?;
     }
     let (outcome, loss) = run.train(&dataset)?;
     let learned = run.export(&outcome.model)?;

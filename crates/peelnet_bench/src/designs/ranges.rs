@@ -2,7 +2,10 @@
 
 use super::views::View;
 use glam::{Mat4, Vec3};
-use peelnet_core::{absorbance::absorbance, methods::slabs::Scale};
+use peelnet_core::{
+    absorbance::absorbance,
+    methods::slabs::{Extent, ends_of},
+};
 use peelnet_scene::{Camera, Scene};
 use rayon::prelude::*;
 use serde::Deserialize;
@@ -55,8 +58,8 @@ fn crossed(unit_from_world: &Mat4, origin: Vec3, direction: Vec3) -> Option<[f32
     (leaves >= enters).then_some([enters, leaves])
 }
 
-/// The scale of boxes at each pixel of a view that has fragments.
-pub(super) fn of_boxes(view: &View, scene: &Scene, camera: &Camera, size: [u32; 2]) -> Vec<Scale> {
+/// The extent of boxes at each pixel of a view that has fragments.
+pub(super) fn of_boxes(view: &View, scene: &Scene, camera: &Camera, size: [u32; 2]) -> Vec<Extent> {
     let boxes = boxes(scene);
     let world_from_view = camera.view_from_world().inverse();
     let up = (camera.fov_y_degrees.to_radians() / 2.0).tan();
@@ -73,17 +76,17 @@ pub(super) fn of_boxes(view: &View, scene: &Scene, camera: &Camera, size: [u32; 
         let zeta = |z: f32| view.warp.cut(z.clamp(camera.near, camera.far).into());
         let zetas: Vec<f64> = crossed.flatten().map(zeta).collect();
         if zetas.is_empty() {
-            Scale::WHOLE
+            Extent::Frame
         } else {
-            Scale::from_ends(zetas)
+            Extent::Given(ends_of(zetas))
         }
     };
     let stacks = view.stacks.par_iter();
     stacks.map(|stack| of_place(stack.place)).collect()
 }
 
-/// The scale of the frame before at each pixel of a view that has fragments.
-pub(super) fn of_last(view: &View, before: &View, width: usize, height: usize) -> Vec<Scale> {
+/// The extent of the frame before at each pixel of a view that has fragments.
+pub(super) fn of_last(view: &View, before: &View, width: usize, height: usize) -> Vec<Extent> {
     // The nearest and the farthest depth, spread along rows, then along columns.
     let mut ends = vec![[f32::INFINITY, f32::NEG_INFINITY]; width * height];
     for stack in &before.stacks {
@@ -108,9 +111,9 @@ pub(super) fn of_last(view: &View, before: &View, width: usize, height: usize) -
     let ends = spread(&ends, height, width, &|i| i / width);
     let of_place = |place: usize| match ends[place] {
         ends @ [low, high] if low <= high => {
-            Scale::from_ends(ends.map(|z| view.warp.cut(z.into())))
+            Extent::Given(ends_of(ends.map(|z| view.warp.cut(z.into()))))
         }
-        _ => Scale::WHOLE,
+        _ => Extent::Frame,
     };
     let stacks = view.stacks.iter();
     stacks.map(|stack| of_place(stack.place)).collect()
@@ -190,7 +193,7 @@ mod tests {
         let found = of_boxes(&view, &scene, &camera, [3, 3]);
         let margin = f64::from(2.0 * peelnet_scene::BOX_MARGIN);
         let ends = [2.0 - margin, 4.0 + margin].map(|z: f64| warp.apply(z));
-        assert_eq!(found, [Scale::from_ends(ends), Scale::WHOLE]);
+        assert_eq!(found, [Extent::Given(ends_of(ends)), Extent::Frame]);
     }
 
     /// A fragment of the frame before is seen two pixels further, and not three.
@@ -200,10 +203,10 @@ mod tests {
         let before = View::new("s", warp, 64, [(0, one(3.0)), (8 + 1, one(5.0))]);
         let lists = [2, 3, 4, 16].map(|place| (place, one(3.0)));
         let view = View::new("s", warp, 64, lists);
-        let of = |ends: [f64; 2]| Scale::from_ends(ends.map(|z| warp.apply(z)));
+        let of = |ends: [f64; 2]| Extent::Given(ends_of(ends.map(|z| warp.apply(z))));
         let found = of_last(&view, &before, 8, 8);
         let both = of([3.0, 5.0]);
-        assert_eq!(found, [both, of([5.0; 2]), Scale::WHOLE, both]);
+        assert_eq!(found, [both, of([5.0; 2]), Extent::Frame, both]);
     }
 
     /// Where all absorbance lies at one depth, that depth is the middle of half of the scale.

@@ -17,10 +17,7 @@ use crate::{
 use peelnet_core::{
     absorbance::DepthWarp,
     fragment::Fragment,
-    methods::{
-        over,
-        slabs::{Extent, Scale},
-    },
+    methods::{over, slabs::Extent},
 };
 use peelnet_model::Model;
 use peelnet_render::gpu::Gpu;
@@ -52,9 +49,9 @@ pub struct View {
     pub(super) stacks: Vec<Stack>,
     /// None where the surfaces need more memory than there is.
     shown: Option<Shown>,
-    /// Of each pixel with fragments, the scales of depth that boxes and the last frame give it. Empty of a view of lists.
-    boxes: Vec<Scale>,
-    last: Vec<Scale>,
+    /// Of each pixel with fragments, the extents of depth that boxes and the last frame give it. Empty of a view of lists.
+    boxes: Vec<Extent>,
+    last: Vec<Extent>,
     quantiles: Option<Quantiles>,
     /// The same view after each of [`MOTIONS`]; empty of a view of lists.
     after: Vec<View>,
@@ -73,10 +70,7 @@ impl Stacked<'_> {
 
     /// What a design's slabs are cut by here.
     pub(super) fn extent(&self, source: Source, of_design: Extent) -> Extent {
-        let given = |found: &[Scale]| {
-            let found = found.get(self.number);
-            found.map_or(Extent::Frame, |&scale| Extent::Given(scale))
-        };
+        let given = |found: &[Extent]| found.get(self.number).copied().unwrap_or(Extent::Frame);
         match source {
             Source::Pixel | Source::Ends | Source::Frame | Source::Quantiles => of_design,
             Source::Boxes => given(&self.view.boxes),

@@ -243,6 +243,20 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
     Ok(())
 }
 
+/// Removes a file that a command's [`Outputs`] allowed to replace; nothing where none is.
+///
+/// # Errors
+/// A file that came or changed meanwhile, and what cannot be looked at or removed.
+pub fn remove_replaced(path: &Path) -> io::Result<()> {
+    let _moving = moving();
+    let now = Output::look(path)?;
+    match (&now.existing, now.allowed()) {
+        (None, _) => Ok(()),
+        (Some(_), Some(allowed)) if allowed.existing == now.existing => fs::remove_file(path),
+        _ => Err(changed()),
+    }
+}
+
 /// Refuses a path that [`write_whole`] refuses: a folder, a link, a device, a pipe, an address of another machine.
 ///
 /// # Errors
@@ -828,6 +842,10 @@ mod tests {
                 assert_eq!(fs::read(&file).expect("reads"), text);
             }
         }
+        remove_replaced(&at("a")).expect("is its own");
+        remove_replaced(&at("a")).expect("is gone");
+        fs::write(at("a"), "mine").expect("writes");
+        assert!(remove_replaced(&at("a")).is_err() && at("a").exists());
         fs::write(at("images/2.png"), "mine").expect("writes");
         assert!(write_whole(&at("images/2.png"), b"note").is_err());
         drop(outputs);

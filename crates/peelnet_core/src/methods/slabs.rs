@@ -1,5 +1,5 @@
-//! `slabs`: known layers without ordered access. The pixel's own range of depth is cut into three or four slabs, and each slab has
-//! its own sums, its own nearest and its own farthest fragment.
+//! `slabs`: known layers without ordered access. Depth is cut into three or four slabs where the pixel's layers are, and each slab has its own
+//! sums, its own nearest and its own farthest fragment.
 //!
 //! What lies in other slabs is wholly in front of a fragment or wholly behind it, so that its absorbance is a plain sum. In the fragment's
 //! own slab the nearest and the farthest layer are known, and up to eight layers of a pixel are. What lies between them is
@@ -32,7 +32,7 @@ pub const MAX_BINS: usize = 16;
 /// A slab: where it ends, and what is kept of it beside its absorbance.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Kept {
-    /// In the range, 0 … 1. It begins where the slab before ends.
+    /// On the pixel's scale, 0 … 1. It begins where the slab before ends.
     pub end: f64,
     /// The mean depth of its absorbance.
     pub mean: bool,
@@ -49,8 +49,8 @@ pub enum Extent {
     Ends,
     /// That of the frame's transparent objects.
     Frame,
-    /// What something else found for the pixel, in 8 bits for either end.
-    Given(Scale),
+    /// The two ends that something else found for the pixel, in levels as of [`ends_of`].
+    Given([f64; 2]),
 }
 
 /// What is kept of a pixel.
@@ -181,9 +181,8 @@ impl Scale {
         }
     }
 
-    /// From the nearest to the farthest of a pixel's fragments.
-    pub fn from_ends(zetas: impl IntoIterator<Item = f64>) -> Self {
-        let [low, high] = ends_of(zetas);
+    /// Between two ends, in levels as of [`ends_of`].
+    pub fn from_ends([low, high]: [f64; 2]) -> Self {
         Self::linear(zeta_of(low), zeta_of(high.max(low + 1.0)))
     }
 
@@ -306,9 +305,9 @@ impl Slabs {
                     let absorbances: Vec<f64> = levels.map(|l| l / BIN_LEVELS).collect();
                     Scale::from_bins(&absorbances, ends_of(fragments.iter().map(|f| f.1)))
                 }
-                Extent::Ends => Scale::from_ends(fragments.iter().map(|f| f.1)),
+                Extent::Ends => Scale::from_ends(ends_of(fragments.iter().map(|f| f.1))),
                 Extent::Frame => Scale::WHOLE,
-                Extent::Given(scale) => scale,
+                Extent::Given(ends) => Scale::from_ends(ends),
             },
             slabs: Default::default(),
         };

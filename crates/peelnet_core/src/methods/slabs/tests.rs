@@ -101,7 +101,7 @@ fn bounds_hold() {
     let level = (1.0 + absorbance(MOST)).powi(2) / f64::from(FARTHEST_CODE.alphas - 1);
     let limit = 4.0 * 0.5 * level;
     let design = Design {
-        extent: Extent::Given(Scale::from_bins(&[1.0], [0.0, 255.0])),
+        extent: Extent::Bins(1),
         ..Design::LARGE
     };
     let mut random = Random::new(7, &[]);
