@@ -233,6 +233,9 @@ fn draw(
             }
             frame => frame?,
         };
+        if exact.is_none() {
+            stage.check_exact(&frame.image)?;
+        }
         let mut picture = None;
         if let (0, Some(folder)) = (view, plan.images) {
             let path = folder.join(image_name(scene, name));

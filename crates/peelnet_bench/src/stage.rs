@@ -2,6 +2,7 @@
 
 use crate::EvalError;
 use glam::Vec3;
+use peelnet_core::files::{counted, printable};
 use peelnet_render::gpu::Gpu;
 use peelnet_render::{
     Frame, Image, MethodOptions, MethodSpec, Prepared, Profile, RenderError, Renderer,
@@ -141,6 +142,20 @@ impl<'a> Stage<'a> {
     pub fn image(&self, ready: &mut Ready, camera: &Camera) -> Result<Frame, EvalError> {
         let frame = self.renderer.image(&mut ready.prepared, camera);
         frame.map_err(self.failed(&ready.name))
+    }
+
+    /// Refuses an exact image that is not finite: nothing can be compared with it.
+    pub fn check_exact(&self, image: &Image) -> Result<(), EvalError> {
+        let is_finite = |p: &&[f32; 4]| p.iter().all(|c| c.is_finite());
+        let other = image.pixels.len() - image.pixels.iter().filter(is_finite).count();
+        if other == 0 {
+            return Ok(());
+        }
+        Err(EvalError::Unusable(format!(
+            "scene '{}': {} of the exact image are not finite, so that nothing can be compared with it; lower emission, light and background",
+            printable(&self.scene.name),
+            counted(other as u64, "pixel")
+        )))
     }
 
     /// The image of a view by a method that draws nothing else.

@@ -107,8 +107,8 @@ impl RawDesign {
             records: self.records()?,
             extent: match self.range {
                 Source::Frame | Source::Quantiles => Extent::Frame,
-                Source::Ends => Extent::Ends,
-                Source::Pixel | Source::Boxes | Source::Last => Extent::Bins(self.bins()?),
+                Source::Ends | Source::Boxes | Source::Last => Extent::Ends,
+                Source::Pixel => Extent::Bins(self.bins()?),
             },
             apart: self.apart,
         };

@@ -119,6 +119,9 @@ impl Take<'_, '_> {
             exact.frames.push((image, shown));
             Ok(())
         })?;
+        for (image, _) in &exact.frames {
+            self.stage.check_exact(image)?;
+        }
         self.save(&strip, EXACT)?;
         Ok(exact)
     }

@@ -68,6 +68,7 @@ fn parse(bytes: &[u8]) -> Result<Parsed, String> {
     if let Some(fields) = document.as_object_mut() {
         fields.retain(|name, field| !(field.is_null() && name.starts_with("scene")));
     }
+    checks::check_names(&document)?;
     checks::list_extensions(&mut document);
     checks::check_version(&document)?;
     checks::check_extensions(&document)?;

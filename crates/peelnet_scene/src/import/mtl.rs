@@ -8,7 +8,7 @@ use crate::{
     texture::Texture,
     warnings::Warnings,
 };
-use peelnet_core::files::printable;
+use peelnet_core::files::{MAX_SHOWN, printable};
 use std::{
     collections::{HashMap, HashSet},
     fmt::Write,
@@ -148,6 +148,9 @@ fn check(path: &Path, text: &str, warnings: &mut Warnings) -> Result<String, Sce
                 let _ = write!(out, "{key} {r} {g} {b}");
             }
             // tobj refuses a material without a name.
+            "newmtl" if rest.len() > MAX_SHOWN => {
+                return Err(fault("has a name of more than 200 bytes"));
+            }
             "newmtl" if rest.is_empty() => out += "newmtl unnamed",
             // Not read, and tobj would refuse what makes no sense there.
             "Ka" | "Ni" | "illum" => {}

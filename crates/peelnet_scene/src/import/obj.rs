@@ -9,7 +9,7 @@ use crate::{
     warnings::Warnings,
 };
 use glam::{DVec3, Vec2, Vec3};
-use peelnet_core::files::printable;
+use peelnet_core::files::{MAX_SHOWN, printable};
 use std::{borrow::Cow, fmt::Write, path::Path};
 
 /// What is said of bright vertices.
@@ -155,6 +155,13 @@ fn check(path: &Path, text: &str, libraries: &mut Libraries<'_, '_>) -> Result<S
                 }
             }
             "mtllib" if !libraries.load(rest)? => continue,
+            "o" | "g" | "usemtl" if rest.len() > MAX_SHOWN => {
+                return Err(fault(
+                    number,
+                    line,
+                    "has a name of more than 200 bytes; repair it",
+                ));
+            }
             // tobj refuses a material without a name.
             "usemtl" if rest.is_empty() => out += "usemtl unnamed",
             "o" | "g" | "mtllib" | "usemtl" => out += line,

@@ -327,6 +327,12 @@ nodes = [{"children": [1, 1]}, {"children": [2, 2]}, {"mesh": 0}] => node 2 is a
 #[test]
 fn bad_files() {
     assert_all_refused(BAD, |changes| load(&changed(changes)));
+    // Each part would have a copy of it.
+    let long = format!("meshes/0/name = {:?}", "n".repeat(201));
+    assert_refused(
+        load(&changed(&long)),
+        "meshes[0].name has 201 bytes & at most 200",
+    );
     load(&changed(r#"asset = {"version": "2.1"}"#)).expect("a file that 2.0 can read");
     let mut nan = square();
     nan[4..8].copy_from_slice(&f32::NAN.to_le_bytes());

@@ -90,6 +90,14 @@ fn bad_files() {
     let with_material = format!("mtllib a.mtl\n{QUAD}usemtl m\nf 1 2 3\n");
     assert_all_refused(BAD_MATERIALS, |mtl| load(&with_material, mtl));
     assert_all_refused(BAD_STATEMENTS, |text| load(&format!("{QUAD}{text}\n"), ""));
+    // Each part and each material would have a copy of it.
+    let long = "n".repeat(201);
+    let words = "has a name of more than 200 bytes";
+    assert_refused(load(&with_material, &format!("newmtl {long}")), words);
+    for statement in ["o", "g", "usemtl"] {
+        let obj = format!("{QUAD}{statement} {long}\nf 1 2 3\n");
+        assert_refused(load(&obj, ""), words);
+    }
     let utf16 = [b'v', 0, b'\n', 0, 0xff, 0xfe];
     assert_refused(load_mesh(&[("a.obj", &utf16)]), "a.obj:2: is not UTF-8");
 }

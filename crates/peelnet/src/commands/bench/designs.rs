@@ -28,6 +28,10 @@ pub(super) fn run(context: &Context<'_>, args: &DesignsArgs) -> Result<(), Failu
         config.check()?;
     }
     let scenes = context.scenes(&args.scenes)?;
+    let most = args.views.map(|n| n as usize);
+    for scene in &scenes {
+        scene.first_views(most).map_err(Failure::wrong)?;
+    }
     let _begun = context.begin_in(&args.out, outputs, &scenes)?;
     let datasets = args.datasets.iter().map(Dataset::open);
     let datasets = datasets.collect::<Result<Vec<_>, _>>()?;
@@ -35,7 +39,6 @@ pub(super) fn run(context: &Context<'_>, args: &DesignsArgs) -> Result<(), Failu
     let gpu = context.gpu()?;
     let bar = Bar::new(context.console, "designs", entries.len() as u64);
     bar.set(0, entries.len() as u64, "peeling".to_owned());
-    let most = args.views.map(|n| n as usize);
     let views = designs::peel(&gpu, &scenes, args.size, most, context.stop)?;
     context.warn_of_memory(&gpu);
     // The errors that others are compared with.

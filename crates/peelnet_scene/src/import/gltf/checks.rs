@@ -15,9 +15,29 @@ use gltf::{
         validation::Checked,
     },
 };
-use peelnet_core::files::printable;
+use peelnet_core::files::{MAX_SHOWN as MAX_NAME, printable};
 use serde_json::Value;
 use std::collections::BTreeSet;
+
+/// Refuses names that are longer than a name is shown: parts and materials have copies of them.
+pub(super) fn check_names(document: &Value) -> Result<(), String> {
+    let lists = document.as_object().into_iter().flatten();
+    for (list, elements) in lists {
+        for (i, element) in elements.as_array().into_iter().flatten().enumerate() {
+            let name = element
+                .get("name")
+                .and_then(Value::as_str)
+                .unwrap_or_default();
+            if name.len() > MAX_NAME {
+                return Err(format!(
+                    "{list}[{i}].name has {} bytes; give it at most {MAX_NAME}",
+                    name.len()
+                ));
+            }
+        }
+    }
+    Ok(())
+}
 
 /// Checks that the file is of glTF 2, and needs nothing newer than 2.0 of its reader.
 pub(super) fn check_version(document: &Value) -> Result<(), String> {
