@@ -19,6 +19,11 @@ pub(super) const METHOD: Expectations = Expectations {
     }),
     known_failures: &[
         COINCIDENT,
+        KnownFailure::new(
+            Property::Dark,
+            "high-alpha",
+            "the network's own error (Tsopouridis et al. 2024)",
+        ),
         KnownFailure::translucent(
             "the network's own error: it predicts the nearest layers' colour with that of the others (Tsopouridis et al. 2024)",
         ),
