@@ -97,7 +97,7 @@ impl DepthWarp {
     /// let w = DepthWarp::new(1.0, 100.0).with_spans([[1.0, 2.0], [50.0, 100.0]]);
     /// let gap = w.cut(50.0) - w.cut(2.0);
     /// assert!(gap > 0.2 && gap < 0.4 && w.apply(50.0) - w.apply(2.0) > 1.3);
-    /// assert_eq!([w.cut(1.0), w.cut(100.0)], [-1.0, 1.0]);
+    /// assert!((w.cut(1.0) + 1.0).abs() < 1e-12 && (w.cut(100.0) - 1.0).abs() < 1e-12);
     /// ```
     pub fn cut(&self, depth: f64) -> f64 {
         let zeta = self.apply(depth);
