@@ -47,10 +47,8 @@ pub(super) const METHOD: Expectations = SLABS.failing(&[
     COINCIDENT.when(is_small),
 ]);
 
-pub(super) const SMALL: Expectations = SLABS.failing(&[
-    SWALLOWED,
-    KnownFailure::swallowed("alpha-tiny").when(is_of_pixel),
-]);
+pub(super) const SMALL: Expectations =
+    SLABS.failing(&[KnownFailure::swallowed("alpha-tiny").when(is_of_pixel)]);
 
 pub(super) const MEDIUM: Expectations = SLABS.failing(&[
     SWALLOWED,
