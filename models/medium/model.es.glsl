@@ -136,20 +136,31 @@ float peelnet_cut(float zeta, vec4 gaps) {
     return ((kept_1 * (2.0 / ((2.0 - lengths.x) - lengths.y))) - 1.0);
 }
 
-PeelnetBins peelnet_bins(float alpha_1, float zeta_1) {
-    vec4 place_4 = vec4(clamp(((zeta_1 * 4.0) + 3.5), 0.0, 7.0));
+vec2 peelnet_range_of(float zeta_1) {
+    float level = (127.5 * (zeta_1 + 1.0));
+    return (vec2((255.0 - floor(level)), ceil(level)) / vec2(255.0));
+}
+
+vec2 peelnet_ends_of(vec2 range_1) {
+    vec2 levels_3 = floor(((range_1 * 255.0) + vec2(0.5)));
+    float nearest_2 = (255.0 - levels_3.x);
+    return vec2(nearest_2, max(levels_3.y, (nearest_2 + 1.0)));
+}
+
+PeelnetBins peelnet_bins(float alpha_1, float zeta_2) {
+    vec4 place_4 = vec4(clamp(((zeta_2 * 4.0) + 3.5), 0.0, 7.0));
     float _e10 = peelnet_absorbance(alpha_1);
-    float level = max(floor(((_e10 * PEELNET_BIN_LEVELS) + 0.5)), 1.0);
+    float level_1 = max(floor(((_e10 * PEELNET_BIN_LEVELS) + 0.5)), 1.0);
     vec4 front_2 = max((vec4(1.0) - abs((place_4 - vec4(0.0, 1.0, 2.0, 3.0)))), vec4(0.0));
     vec4 back_2 = max((vec4(1.0) - abs((place_4 - vec4(4.0, 5.0, 6.0, 7.0)))), vec4(0.0));
-    float depth = (127.5 * (zeta_1 + 1.0));
-    return PeelnetBins((floor(((level * front_2) + vec4(0.5))) / vec4(255.0)), (floor(((level * back_2) + vec4(0.5))) / vec4(255.0)), (vec2((255.0 - floor(depth)), ceil(depth)) / vec2(255.0)));
+    vec2 _e60 = peelnet_range_of(zeta_2);
+    return PeelnetBins((floor(((level_1 * front_2) + vec4(0.5))) / vec4(255.0)), (floor(((level_1 * back_2) + vec4(0.5))) / vec4(255.0)), _e60);
 }
 
 vec4 peelnet_seen_behind(float before, vec4 bins) {
     float two = (bins.x + bins.y);
-    vec4 levels_3 = (vec4(before) + vec4(bins.x, two, (two + bins.z), ((two + bins.z) + bins.w)));
-    return exp((levels_3 * -3.984375));
+    vec4 levels_4 = (vec4(before) + vec4(bins.x, two, (two + bins.z), ((two + bins.z) + bins.w)));
+    return exp((levels_4 * -3.984375));
 }
 
 float peelnet_up_to(float place, vec4 front, vec4 back) {
@@ -158,19 +169,19 @@ float peelnet_up_to(float place, vec4 front, vec4 back) {
     return (dot(front, (a - vec4(a.yzw, b.x))) + dot(back, (b - vec4(b.yzw, abs((place - 8.0))))));
 }
 
-float peelnet_in_pixel(float zeta_2, vec4 front_1, vec4 back_1, vec2 range_1) {
-    float place_5 = ((zeta_2 * 4.0) + 4.0);
+float peelnet_in_pixel(float zeta_3, vec4 front_1, vec4 back_1, vec2 range_2) {
+    float place_5 = ((zeta_3 * 4.0) + 4.0);
     vec4 _e9 = peelnet_seen_behind(0.0, front_1);
     vec4 _e13 = peelnet_seen_behind(dot(front_1, vec4(1.0)), back_1);
     vec4 of_front = sqrt(abs((vec4(1.0, _e9.xyz) - _e9)));
     vec4 of_back = sqrt(abs((vec4(_e9.w, _e13.xyz) - _e13)));
-    vec2 levels_4 = floor(((range_1 * 255.0) + vec2(0.5)));
-    float nearest_2 = (255.0 - levels_4.x);
-    float _e37 = peelnet_up_to((nearest_2 * 0.03137255), of_front, of_back);
-    float _e44 = peelnet_up_to((max(levels_4.y, (nearest_2 + 1.0)) * 0.03137255), of_front, of_back);
-    float all_ = (_e44 - _e37);
-    float _e46 = peelnet_up_to(place_5, of_front, of_back);
-    float passed_1 = ((_e46 - _e37) / max(all_, 1e-6));
+    vec2 _e26 = peelnet_ends_of(range_2);
+    vec2 ends_1 = (_e26 * 0.03137255);
+    float _e30 = peelnet_up_to(ends_1.x, of_front, of_back);
+    float _e32 = peelnet_up_to(ends_1.y, of_front, of_back);
+    float all_ = (_e32 - _e30);
+    float _e34 = peelnet_up_to(place_5, of_front, of_back);
+    float passed_1 = ((_e34 - _e30) / max(all_, 1e-6));
     return ((all_ == 0.0) ? sqrt((place_5 * 0.125)) : clamp(passed_1, 0.0, 1.0));
 }
 
@@ -262,9 +273,9 @@ PeelnetBetween peelnet_between(PeelnetPlace place_2, float total, float first, v
     float x = clamp(((place_2.inside - _e118) * per_extent), 0.0, 1.0);
     float _e126 = begin;
     float _e127 = end;
-    float depth_1 = clamp((moment / max(rest, noise)), _e126, _e127);
+    float depth = clamp((moment / max(rest, noise)), _e126, _e127);
     float _e129 = begin;
-    float mean = clamp(((depth_1 - _e129) * per_extent), 0.0, 1.0);
+    float mean = clamp(((depth - _e129) * per_extent), 0.0, 1.0);
     bool before_1 = (x < mean);
     float bound = ((before_1 ? (1.0 - mean) : (x - mean)) / max((before_1 ? (1.0 - x) : x), 1e-6));
     float low = (before_1 ? 0.0 : bound);

@@ -165,17 +165,32 @@ float peelnet_cut(
     return (kept_1 * (2.0 / ((2.0 - lengths.x) - lengths.y))) - 1.0;
 }
 
-PeelnetBins peelnet_bins(
-    float alpha_1,
+metal::float2 peelnet_range_of(
     float zeta_1
 ) {
-    metal::float4 place_4 = metal::float4(metal::clamp((zeta_1 * 4.0) + 3.5, 0.0, 7.0));
+    float level = 127.5 * (zeta_1 + 1.0);
+    return metal::float2(255.0 - metal::floor(level), metal::ceil(level)) / metal::float2(255.0);
+}
+
+metal::float2 peelnet_ends_of(
+    metal::float2 range_1
+) {
+    metal::float2 levels_3 = metal::floor((range_1 * 255.0) + metal::float2(0.5));
+    float nearest_2 = 255.0 - levels_3.x;
+    return metal::float2(nearest_2, metal::max(levels_3.y, nearest_2 + 1.0));
+}
+
+PeelnetBins peelnet_bins(
+    float alpha_1,
+    float zeta_2
+) {
+    metal::float4 place_4 = metal::float4(metal::clamp((zeta_2 * 4.0) + 3.5, 0.0, 7.0));
     float _e10 = peelnet_absorbance(alpha_1);
-    float level = metal::max(metal::floor((_e10 * PEELNET_BIN_LEVELS) + 0.5), 1.0);
+    float level_1 = metal::max(metal::floor((_e10 * PEELNET_BIN_LEVELS) + 0.5), 1.0);
     metal::float4 front_2 = metal::max(metal::float4(1.0) - metal::abs(place_4 - metal::float4(0.0, 1.0, 2.0, 3.0)), metal::float4(0.0));
     metal::float4 back_2 = metal::max(metal::float4(1.0) - metal::abs(place_4 - metal::float4(4.0, 5.0, 6.0, 7.0)), metal::float4(0.0));
-    float depth = 127.5 * (zeta_1 + 1.0);
-    return PeelnetBins {metal::floor((level * front_2) + metal::float4(0.5)) / metal::float4(255.0), metal::floor((level * back_2) + metal::float4(0.5)) / metal::float4(255.0), metal::float2(255.0 - metal::floor(depth), metal::ceil(depth)) / metal::float2(255.0)};
+    metal::float2 _e60 = peelnet_range_of(zeta_2);
+    return PeelnetBins {metal::floor((level_1 * front_2) + metal::float4(0.5)) / metal::float4(255.0), metal::floor((level_1 * back_2) + metal::float4(0.5)) / metal::float4(255.0), _e60};
 }
 
 metal::float4 peelnet_seen_behind(
@@ -183,8 +198,8 @@ metal::float4 peelnet_seen_behind(
     metal::float4 bins
 ) {
     float two = bins.x + bins.y;
-    metal::float4 levels_3 = metal::float4(before) + metal::float4(bins.x, two, two + bins.z, (two + bins.z) + bins.w);
-    return metal::exp(levels_3 * -3.984375);
+    metal::float4 levels_4 = metal::float4(before) + metal::float4(bins.x, two, two + bins.z, (two + bins.z) + bins.w);
+    return metal::exp(levels_4 * -3.984375);
 }
 
 float peelnet_up_to(
@@ -198,23 +213,23 @@ float peelnet_up_to(
 }
 
 float peelnet_in_pixel(
-    float zeta_2,
+    float zeta_3,
     metal::float4 front_1,
     metal::float4 back_1,
-    metal::float2 range_1
+    metal::float2 range_2
 ) {
-    float place_5 = (zeta_2 * 4.0) + 4.0;
+    float place_5 = (zeta_3 * 4.0) + 4.0;
     metal::float4 _e9 = peelnet_seen_behind(0.0, front_1);
     metal::float4 _e13 = peelnet_seen_behind(metal::dot(front_1, metal::float4(1.0)), back_1);
     metal::float4 of_front = metal::sqrt(metal::abs(metal::float4(1.0, _e9.xyz) - _e9));
     metal::float4 of_back = metal::sqrt(metal::abs(metal::float4(_e9.w, _e13.xyz) - _e13));
-    metal::float2 levels_4 = metal::floor((range_1 * 255.0) + metal::float2(0.5));
-    float nearest_2 = 255.0 - levels_4.x;
-    float _e37 = peelnet_up_to(nearest_2 * 0.03137255, of_front, of_back);
-    float _e44 = peelnet_up_to(metal::max(levels_4.y, nearest_2 + 1.0) * 0.03137255, of_front, of_back);
-    float all = _e44 - _e37;
-    float _e46 = peelnet_up_to(place_5, of_front, of_back);
-    float passed_1 = (_e46 - _e37) / metal::max(all, 0.000001);
+    metal::float2 _e26 = peelnet_ends_of(range_2);
+    metal::float2 ends_1 = _e26 * 0.03137255;
+    float _e30 = peelnet_up_to(ends_1.x, of_front, of_back);
+    float _e32 = peelnet_up_to(ends_1.y, of_front, of_back);
+    float all = _e32 - _e30;
+    float _e34 = peelnet_up_to(place_5, of_front, of_back);
+    float passed_1 = (_e34 - _e30) / metal::max(all, 0.000001);
     return (all == 0.0) ? metal::sqrt(place_5 * 0.125) : metal::clamp(passed_1, 0.0, 1.0);
 }
 
@@ -328,9 +343,9 @@ PeelnetBetween peelnet_between(
     float x = metal::clamp((place_2.inside - _e118) * per_extent, 0.0, 1.0);
     float _e126 = begin;
     float _e127 = end;
-    float depth_1 = metal::clamp(moment / metal::max(rest, noise), _e126, _e127);
+    float depth = metal::clamp(moment / metal::max(rest, noise), _e126, _e127);
     float _e129 = begin;
-    float mean = metal::clamp((depth_1 - _e129) * per_extent, 0.0, 1.0);
+    float mean = metal::clamp((depth - _e129) * per_extent, 0.0, 1.0);
     bool before_1 = x < mean;
     float bound = (before_1 ? (1.0 - mean) : (x - mean)) / metal::max(before_1 ? (1.0 - x) : x, 0.000001);
     float low = before_1 ? 0.0 : bound;

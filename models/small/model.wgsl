@@ -156,21 +156,29 @@ struct PeelnetBins {
     range: vec2f,
 }
 
+// The two ends of a pixel that a depth alone would have: its level counted from the far end, rounded down from the near one, and its level,
+// rounded up. Of each the most is kept.
+fn peelnet_range_of(zeta: f32) -> vec2f {
+    let level = 127.5 * (zeta + 1.0);
+    return vec2f(255.0 - floor(level), ceil(level)) / 255.0;
+}
+
+// The levels, 0 .. 255, of the nearest and of the farthest depth of a pixel, at least one apart.
+fn peelnet_ends_of(range: vec2f) -> vec2f {
+    let levels = floor(range * 255.0 + 0.5);
+    let nearest = 255.0 - levels.x;
+    return vec2f(nearest, max(levels.y, nearest + 1.0));
+}
+
 // What a fragment writes. Its absorbance is added, shared between the two bins whose middles it lies between, so that little changes as it
-// moves from one to the other, and in whole levels, so that no order of adding changes a sum. Of levels of depth the most is kept: rounded
-// down from the near end, and up from the far end.
+// moves from one to the other, and in whole levels, so that no order of adding changes a sum.
 fn peelnet_bins(alpha: f32, zeta: f32) -> PeelnetBins {
     let place = vec4f(clamp(zeta * 4.0 + 3.5, 0.0, 7.0));
     // At least one: a bin with any fragment is not empty.
     let level = max(floor(peelnet_absorbance(alpha) * PEELNET_BIN_LEVELS + 0.5), 1.0);
     let front = max(vec4f(1.0) - abs(place - vec4f(0.0, 1.0, 2.0, 3.0)), vec4f(0.0));
     let back = max(vec4f(1.0) - abs(place - vec4f(4.0, 5.0, 6.0, 7.0)), vec4f(0.0));
-    let depth = 127.5 * (zeta + 1.0);
-    return PeelnetBins(
-        floor(level * front + 0.5) / 255.0,
-        floor(level * back + 0.5) / 255.0,
-        vec2f(255.0 - floor(depth), ceil(depth)) / 255.0,
-    );
+    return PeelnetBins(floor(level * front + 0.5) / 255.0, floor(level * back + 0.5) / 255.0, peelnet_range_of(zeta));
 }
 
 // What is let through by each of four bins and by what is before it.
@@ -196,11 +204,10 @@ fn peelnet_in_pixel(zeta: f32, front: vec4f, back: vec4f, range: vec2f) -> f32 {
     let far = peelnet_seen_behind(dot(front, vec4f(1.0)), back);
     let of_front = sqrt(abs(vec4f(1.0, near.xyz) - near));
     let of_back = sqrt(abs(vec4f(near.w, far.xyz) - far));
-    // The pixel's ends, in bins.
-    let levels = floor(range * 255.0 + 0.5);
-    let nearest = 255.0 - levels.x;
-    let begin = peelnet_up_to(nearest * (8.0 / 255.0), of_front, of_back);
-    let end = peelnet_up_to(max(levels.y, nearest + 1.0) * (8.0 / 255.0), of_front, of_back);
+    // In bins.
+    let ends = peelnet_ends_of(range) * (8.0 / 255.0);
+    let begin = peelnet_up_to(ends.x, of_front, of_back);
+    let end = peelnet_up_to(ends.y, of_front, of_back);
     let all = end - begin;
     let passed = (peelnet_up_to(place, of_front, of_back) - begin) / max(all, 1e-6);
     return select(clamp(passed, 0.0, 1.0), sqrt(place * 0.125), all == 0.0);

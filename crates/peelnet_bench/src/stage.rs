@@ -146,8 +146,7 @@ impl<'a> Stage<'a> {
 
     /// Refuses an exact image that is not finite: nothing can be compared with it.
     pub fn check_exact(&self, image: &Image) -> Result<(), EvalError> {
-        let is_finite = |p: &&[f32; 4]| p.iter().all(|c| c.is_finite());
-        let other = image.pixels.len() - image.pixels.iter().filter(is_finite).count();
+        let other = image.non_finite();
         if other == 0 {
             return Ok(());
         }

@@ -293,8 +293,7 @@ impl SceneBuffers {
     pub fn depth_warp(&self, camera: &Camera) -> DepthWarp {
         let view = camera.view_from_world();
         let depth = |p| (-view.transform_point3(p).z).clamp(camera.near, camera.far);
-        let boxes = self.transparent_parts().filter_map(|part| part.bounds);
-        let spans = boxes.map(|bounds| {
+        let spans = self.boxes().map(|bounds| {
             let depths = corners_of(bounds).map(depth);
             depths.fold([f32::INFINITY, 0.0], |[a, b], z| [a.min(z), b.max(z)])
         });
@@ -310,10 +309,9 @@ impl SceneBuffers {
         }
     }
 
-    /// The corners of the boxes around transparent parts, in world space.
-    fn corners(&self) -> impl Iterator<Item = glam::Vec3> {
-        let boxes = self.transparent_parts().filter_map(|part| part.bounds);
-        boxes.flat_map(corners_of)
+    /// The boxes around transparent parts, in world space.
+    fn boxes(&self) -> impl Iterator<Item = [glam::Vec3; 2]> {
+        self.transparent_parts().filter_map(|part| part.bounds)
     }
 
     /// A rectangle of pixels (x, y, width, height) outside which no transparent surface is seen: around the boxes of all of them, and the
@@ -322,7 +320,7 @@ impl SceneBuffers {
         let clip = clip_from_world(camera, frame, point);
         let size = glam::Vec2::from_array(frame.size.map(|s| s as f32));
         let (mut low, mut high) = (size, glam::Vec2::ZERO);
-        for corner in self.corners() {
+        for corner in self.boxes().flat_map(corners_of) {
             let place = clip * corner.extend(1.0);
             if place.w <= 0.0 {
                 (low, high) = (glam::Vec2::ZERO, size);

@@ -101,7 +101,9 @@ pub(super) fn list_extensions(document: &mut Value) {
         .entry("extensionsUsed")
         .or_insert_with(|| Value::Array(Vec::new()));
     if let Some(used) = used.as_array_mut() {
-        names.retain(|name| !used.iter().any(|known| known == name));
+        for known in used.iter().filter_map(Value::as_str) {
+            names.remove(known);
+        }
         used.extend(names.into_iter().map(Value::String));
     }
 }
