@@ -9,15 +9,10 @@ use peelnet_core::mlp::Mlp;
 use peelnet_model::{Model, Recipe};
 
 /// The directive that a text in 16 bits begins with, behind its header.
-const ENABLE_HALVES: &str = "enable f16;\n";
+pub(crate) const ENABLE_HALVES: &str = "enable f16;\n";
 
 /// Random inputs of a verification, drawn evenly from the range that training saw.
 pub(crate) const RANDOM: usize = 4096;
-
-/// Whether a WGSL text computes in 16 bits.
-pub(crate) fn has_halves(wgsl: &str) -> bool {
-    wgsl.lines().any(|line| line == ENABLE_HALVES.trim_end())
-}
 
 /// Multiply–adds of one evaluation of the network, as published costs count them (padding not included).
 pub(crate) fn multiply_adds(mlp: &Mlp) -> usize {

@@ -6,7 +6,7 @@ use crate::{
     language::parsed,
     network::function_name,
     self_test::SelfTest,
-    text::{RANDOM, code, has_halves, text},
+    text::{ENABLE_HALVES, RANDOM, code, text},
 };
 use peelnet_core::files::STDOUT;
 use peelnet_core::{
@@ -82,7 +82,7 @@ fn tolerance(model: &Model, raw: &[f64]) -> f64 {
 /// # Errors
 /// A text that differs from the model, with the input at which it does; a text that is not valid; a GPU that fails.
 pub fn verify(gpu: &Gpu, model: &Model, wgsl: &str) -> Result<Verification, ExportError> {
-    let halves = has_halves(wgsl);
+    let halves = wgsl.lines().any(|line| line == ENABLE_HALVES.trim_end());
     if halves {
         let flag = wgpu::Features::SHADER_F16;
         gpu.need(flag, "a text in 16 bits", "export in 32 bits")?;

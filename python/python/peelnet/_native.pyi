@@ -57,7 +57,7 @@ class Camera:
 @final
 class Scene:
     def __new__(
-        cls, path: _Path, *, time: float | None = None, files_from: Sequence[_Path] = ()
+        cls, path: _Path, *, time: float | None = None, files_from: Sequence[_Path] = ...
     ) -> Scene: ...
     @staticmethod
     def from_bytes(
