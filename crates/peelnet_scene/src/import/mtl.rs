@@ -89,10 +89,7 @@ impl<'a, 'f> Libraries<'a, 'f> {
             let mut shares = colors.chain(finish);
             let is_dark = m.emissive.is_some_and(|e| e.iter().any(|x| *x < 0.0));
             if is_dark || shares.any(|x| !(0.0..=1.0).contains(&x)) {
-                let name = format!("'{}'", printable(&m.name));
-                let text = "numbers outside of their range are taken as the nearest in it: ";
-                let before = format!("{}: {text}", shown(&file));
-                self.files.warnings.about(before, &name, "");
+                self.files.warnings.clamped(&file, &m.name);
             }
             let material = self.put_on(&file, m, material(m, lighting));
             self.materials.push(material);

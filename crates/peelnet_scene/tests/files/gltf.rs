@@ -275,6 +275,22 @@ fn what_is_not_drawn_is_reported() {
     assert_says(&warnings, words);
 }
 
+/// As those of materials, and as scene files demand them.
+#[test]
+fn numbers_of_lights_are_taken_as_the_nearest_in_their_range() {
+    let lights = "extensions/KHR_lights_punctual/lights";
+    let scene = load(&changed(&format!(
+        "{lights}/0/intensity = -30 ; {lights}/1/color = [-5, 0.5, 2] ; {lights}/1/name = \"sun\""
+    )))
+    .unwrap();
+    let [point, sun] = &scene.lights[..] else {
+        panic!("{:?}", scene.lights);
+    };
+    assert_eq!((point.intensity, sun.color), (0.0, [0.0, 0.5, 1.0]));
+    let warnings = scene.warnings.join("\n");
+    assert_says(&warnings, "nearest in it: light 0, sun");
+}
+
 /// A rotation of any length turns, and does nothing else.
 #[test]
 fn rotations_are_normalized() {

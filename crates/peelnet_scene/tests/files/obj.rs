@@ -204,7 +204,7 @@ fn materials_as_old_exporters_write_them() {
     assert_eq!(n.lighting, Lighting::Unlit);
     let warnings = warnings.join("\n");
     assert_eq!(warnings.matches("-halo").count(), 1, "{warnings}");
-    assert_says(&warnings, "nearest in it: 'n' & 'o' & 'p'");
+    assert_says(&warnings, "nearest in it: n, o, p");
     // The same where the text is not UTF-8: the first line is a vertex still.
     let latin = [b"\xef\xbb\xbf", QUAD.as_bytes(), b"# caf\xe9\nf 1 2 3\n"].concat();
     let (mesh, ..) = load_mesh(&[("a.obj", &latin)]).unwrap();
