@@ -275,6 +275,19 @@ fn what_is_not_drawn_is_reported() {
     assert_says(&warnings, words);
 }
 
+/// A field of view of 516 degrees, and a place without a direction.
+#[test]
+fn cameras_that_cannot_be_are_named() {
+    let scene = load(&changed(
+        "cameras/1 = {\"type\": \"perspective\", \"name\": \"wide\", \"perspective\": {\"yfov\": 9, \"znear\": 1}} ; \
+         cameras/2 = {\"type\": \"perspective\", \"perspective\": {\"yfov\": 0.8, \"znear\": 1}} ; \
+         nodes/0/children = [1, 3, 5, 6, 7] ; nodes/6 = {\"camera\": 1} ; nodes/7 = {\"camera\": 2, \"scale\": [0, 0, 0]}",
+    ))
+    .unwrap();
+    assert_eq!(scene.views.len(), 1);
+    assert_says(&scene.warnings.join("\n"), "left out: wide, camera 2");
+}
+
 /// As those of materials, and as scene files demand them.
 #[test]
 fn numbers_of_lights_are_taken_as_the_nearest_in_their_range() {

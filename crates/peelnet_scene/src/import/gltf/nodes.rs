@@ -179,7 +179,10 @@ impl<'a, 'f> Reader<'a, 'f> {
         }
         if let Some(camera) = node.camera() {
             match camera.projection() {
-                Projection::Perspective(p) => self.loaded.cameras.extend(view(&p, world)),
+                Projection::Perspective(p) => {
+                    let name = name_of(camera.name(), "camera", camera.index());
+                    self.loaded.cameras.push((name, view(&p, world)));
+                }
                 Projection::Orthographic(_) => self.missing("orthographic cameras", "", ""),
             }
         }
@@ -187,16 +190,16 @@ impl<'a, 'f> Reader<'a, 'f> {
     }
 }
 
-/// A camera that looks along −z; `None` where its place makes no sense.
-fn view(p: &gltf::camera::Perspective<'_>, world: Mat4) -> Option<Camera> {
-    let direction = |v: Vec3| world.transform_vector3(v).try_normalize();
+/// A camera that looks along −z.
+fn view(p: &gltf::camera::Perspective<'_>, world: Mat4) -> Camera {
+    let direction = |v: Vec3| world.transform_vector3(v).normalize_or_zero();
     let position = world.transform_point3(Vec3::ZERO);
-    Some(Camera {
+    Camera {
         position,
-        target: position + direction(Vec3::NEG_Z)?,
-        up: direction(Vec3::Y)?,
+        target: position + direction(Vec3::NEG_Z),
+        up: direction(Vec3::Y),
         fov_y_degrees: p.yfov().to_degrees(),
         near: p.znear(),
         far: p.zfar().unwrap_or(f32::INFINITY),
-    })
+    }
 }
