@@ -263,7 +263,7 @@ fn what_is_not_drawn_is_reported() {
          scenes = [{\"nodes\": [0]}, {\"nodes\": [0]}]",
     );
     let warnings = load(&document).unwrap().warnings.join("\n");
-    let words = "image 0, which 'a.png' cannot be read & image 1, which is neither & KHR_materials_clearcoat & Lines & spot lights & \
+    let words = "image 0 ('a.png'), which cannot be read & image 1, which is neither & KHR_materials_clearcoat & Lines & spot lights & \
         scenes other than number 0 of 2";
     assert_says(&warnings, words);
     let document = changed(
@@ -272,6 +272,15 @@ fn what_is_not_drawn_is_reported() {
     );
     let warnings = load(&document).unwrap().warnings.join("\n");
     let words = "a texture without an image & texture transforms of normal & extensions: FOO_bar & numbers outside of their range";
+    assert_says(&warnings, words);
+    let document = changed(
+        "accessors/1/count = 5 ; nodes/1/matrix = [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,2] ; nodes/1/translation = [0, 0, 0] ; \
+         images = [{\"uri\": \"a.png\"}, {\"uri\": \"b.png\"}] ; textures = [{\"source\": 0}, {\"source\": 1}] ; \
+         materials/0/emissiveTexture = {\"index\": 0} ; materials/1/emissiveTexture = {\"index\": 1}",
+    );
+    let warnings = load(&document).unwrap().warnings.join("\n");
+    let words = "beyond the last triangle (mesh 0, primitive 0, mesh 0, primitive 1, mesh 0, primitive 2 and 1 more) & \
+        beside a matrix: node 1 & perspective of a matrix: node 1 & image 0 ('a.png'), image 1 ('b.png'), which cannot be read";
     assert_says(&warnings, words);
 }
 

@@ -94,7 +94,13 @@ impl Reader<'_, '_> {
             match self.decode(image, &name) {
                 Ok(texture) => Some(Arc::new(texture)),
                 Err(why) => {
-                    self.missing("", &printable(&name), &format!(", which {why}"));
+                    let shown = match image.source() {
+                        gltf::image::Source::Uri { uri, .. } if !uri.starts_with("data:") => {
+                            format!("{} ('{}')", printable(&name), printable(uri))
+                        }
+                        _ => printable(&name).into_owned(),
+                    };
+                    self.missing("", &shown, &format!(", which {why}"));
                     None
                 }
             }

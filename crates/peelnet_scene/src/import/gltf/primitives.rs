@@ -117,6 +117,13 @@ impl Reader<'_, '_> {
         if 3 * part.triangles.len() < n {
             part.keep_used();
         }
+        let left_over = match mode {
+            Mode::Triangles => indices.len() % 3 != 0,
+            _ => indices.len() < 3,
+        };
+        if left_over {
+            self.missing("vertices beyond the last triangle (", &place, ")");
+        }
         let warnings = &mut self.files.warnings;
         self.loaded.mesh.append(part, &self.not_drawn, warnings);
         Ok(())
