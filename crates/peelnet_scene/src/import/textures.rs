@@ -208,6 +208,9 @@ impl Libraries<'_, '_> {
             if !color.has_alpha {
                 return Some(Arc::clone(color));
             }
+            let warnings = &mut self.files.warnings;
+            let after = ": its opacity is not drawn; name it with map_d as well";
+            warnings.about("texture ", &printable(&color.name), after);
             let opaque = || color.opaque();
             let made = self.files.made("colours", [Some(color), None], opaque);
             return self.drawn(made, &format!("colours of {}", color.name));
