@@ -57,6 +57,9 @@ const WRONG_USAGE: &str = "
     render two.toml --out a.png --samples 8
     bench two.toml --out d --methods mboit4:bios=1
     bench effects two.toml --out d --samples 4
+    bench path two.toml --out d --frames 0
+    bench effects two.toml --out d --frames 0
+    bench scaling --out d --frames 0
     bench redraw two.toml --out d
     bench two.toml --out d --samples 2
     stress --methods mboit4:overestimation=-5
@@ -73,7 +76,6 @@ const REFUSED: &str = "
     2 | extract two.toml two.toml --out d | rename one
     1 | extract stained.toml --out d | transmission_color
     2 | bench two.toml two.toml --out b | named 'two' & two.toml) & rename one
-    2 | bench path two.toml --frames 0 --out b | at least one frame
     1 | bench path two.toml --frames 1000 --methods abuffer --out b | 1000 frames of 1024x768 & --size
     2 | bench designs own two.toml --out b | own: & scene 'two' & without it
     1 | bench designs own nan.toml --file designs.toml --out b | designs.toml & design 1 (\"short\") & must end at 1
