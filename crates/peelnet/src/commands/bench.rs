@@ -289,10 +289,5 @@ pub(super) fn read(path: &Path) -> Result<Results<Bench>, Failure> {
         let text = format!("{why}; make it with: peelnet bench SCENE --out DIR");
         Failure::failed(text)
     };
-    let results: Results<Bench> = Results::read(path).map_err(|e| failed(error_line(&e)))?;
-    for (k, row) in results.measured.rows.iter().enumerate() {
-        let checked = row.check();
-        checked.map_err(|why| failed(format!("{}: rows[{k}]: {why}", shown(path))))?;
-    }
-    Ok(results)
+    Results::read(path).map_err(|e| failed(error_line(&e)))
 }
