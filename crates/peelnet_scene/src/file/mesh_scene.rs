@@ -31,7 +31,10 @@ pub(super) fn load(path: &Path, load: Load, mut files: Files<'_>) -> Result<Scen
         match sound(camera, bounds) {
             Some(camera) => views.push(camera),
             None => {
-                let before = format!("{}: cameras that cannot be, left out: ", shown(path));
+                let before = format!(
+                    "{}: cameras whose numbers make no sense are left out: ",
+                    shown(path)
+                );
                 files.warnings.about(before, &printable(&name), "");
             }
         }

@@ -286,7 +286,7 @@ fn what_is_not_drawn_is_reported() {
 
 /// A field of view of 516 degrees, and a place without a direction.
 #[test]
-fn cameras_that_cannot_be_are_named() {
+fn cameras_without_sense_are_named() {
     let scene = load(&changed(
         "cameras/1 = {\"type\": \"perspective\", \"name\": \"wide\", \"perspective\": {\"yfov\": 9, \"znear\": 1}} ; \
          cameras/2 = {\"type\": \"perspective\", \"perspective\": {\"yfov\": 0.8, \"znear\": 1}} ; \
