@@ -25,7 +25,7 @@ pub(super) struct Reader<'a, 'f> {
     pub loaded: Imported,
 }
 
-/// A value within its bounds; the lower one instead of none.
+/// A value within its bounds; the lower one instead of NaN.
 pub(super) fn finite(x: f32, low: f32, high: f32) -> f32 {
     if x.is_nan() { low } else { x.clamp(low, high) }
 }
