@@ -356,6 +356,24 @@ fn doctor_answers_in_json() {
     assert_eq!(answer["install"].is_string(), has_none);
 }
 
+/// Fifty layers over the whole frame would take a CPU seconds.
+#[test]
+fn inspect_counts_many_layers_in_a_small_frame() {
+    let (camera, object) = SCENE.split_at(SCENE.find("[[object]]").unwrap());
+    let object = object.replace("[1, 1]", "[9, 9]");
+    let many = format!("{camera}{}", object.repeat(50));
+    let folder = Folder::new(&[("two.toml", SCENE), ("many.toml", &many)]);
+    for (line, [width, height], layers) in [
+        ("inspect two.toml", [1024, 768], 1),
+        ("inspect many.toml", [64, 48], 50),
+    ] {
+        let answer = folder.json(line);
+        let frame = serde_json::json!({"view": 0, "width": width, "height": height});
+        assert_eq!(answer["counted_at"], frame, "{line}");
+        assert_eq!(answer["max_layers"], layers, "{line}");
+    }
+}
+
 /// The shipped vase: each layer highlighted at a time of its own, what there is not is refused, and `inspect` and the measurement of
 /// effects list what it needs.
 #[test]
