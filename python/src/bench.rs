@@ -176,7 +176,10 @@ fn rows_of(results: &Bound<'_, PyAny>) -> PyResult<Vec<Row>> {
     }
     let convert = results.py().import("peelnet._convert")?;
     let text: String = convert.call_method1("text", (results,))?.extract()?;
-    serde_json::from_str(&text).map_err(|e| failed(format!("results: not what bench returns: {e}")))
+    // Rows are checked where they are those of a bench.
+    let read = serde_json::from_str::<Bench>(&format!("{{\"rows\": {text}}}"));
+    let read = read.map_err(|e| failed(format!("results: not what bench returns: {e}")))?;
+    Ok(read.rows)
 }
 
 /// Recommends the method for a budget of time, error or memory.

@@ -57,6 +57,9 @@ const WRONG_USAGE: &str = "
     render two.toml --out a.png --samples 8
     bench two.toml --out d --methods mboit4:bios=1
     bench effects two.toml --out d --samples 4
+    bench path two.toml --out d --frames 0
+    bench effects two.toml --out d --frames 0
+    bench scaling --out d --frames 0
     bench redraw two.toml --out d
     bench two.toml --out d --samples 2
     stress --methods mboit4:overestimation=-5
@@ -73,7 +76,6 @@ const REFUSED: &str = "
     2 | extract two.toml two.toml --out d | rename one
     1 | extract stained.toml --out d | transmission_color
     2 | bench two.toml two.toml --out b | named 'two' & two.toml) & rename one
-    2 | bench path two.toml --frames 0 --out b | at least one frame
     1 | bench path two.toml --frames 1000 --methods abuffer --out b | 1000 frames of 1024x768 & --size
     2 | bench designs own two.toml --out b | own: & scene 'two' & without it
     1 | bench designs own nan.toml --file designs.toml --out b | designs.toml & design 1 (\"short\") & must end at 1
@@ -352,6 +354,24 @@ fn doctor_answers_in_json() {
     assert_eq!(output.status.code(), Some(i32::from(!usable)));
     let has_none = answer["adapters"] == serde_json::json!([]);
     assert_eq!(answer["install"].is_string(), has_none);
+}
+
+/// Fifty layers over the whole frame would take a CPU seconds.
+#[test]
+fn inspect_counts_many_layers_in_a_small_frame() {
+    let (camera, object) = SCENE.split_at(SCENE.find("[[object]]").unwrap());
+    let object = object.replace("[1, 1]", "[9, 9]");
+    let many = format!("{camera}{}", object.repeat(50));
+    let folder = Folder::new(&[("two.toml", SCENE), ("many.toml", &many)]);
+    for (line, [width, height], layers) in [
+        ("inspect two.toml", [1024, 768], 1),
+        ("inspect many.toml", [64, 48], 50),
+    ] {
+        let answer = folder.json(line);
+        let frame = serde_json::json!({"view": 0, "width": width, "height": height});
+        assert_eq!(answer["counted_at"], frame, "{line}");
+        assert_eq!(answer["max_layers"], layers, "{line}");
+    }
 }
 
 /// The shipped vase: each layer highlighted at a time of its own, what there is not is refused, and `inspect` and the measurement of

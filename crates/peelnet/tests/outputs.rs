@@ -111,15 +111,20 @@ fn a_folder_of_results_is_of_one_run() {
     std::fs::remove_dir_all(folder.at("b/images")).unwrap();
     folder.prints("bench redraw --out b");
     let results = String::from_utf8(folder.read("b/results.json")).unwrap();
-    let edited = results.replace("\"mse_linear\": ", "\"mse_linear\": -");
-    folder.write("b/results.json", edited);
-    for line in ["bench redraw --out b", "recommend two.toml --results b"] {
-        let said = folder.says(line, 1);
-        let words = [
-            "b: rows[1]: `mse_linear` is -",
-            "and lies from 0 to 1e80; make it with",
-        ];
-        assert!(words.iter().all(|word| said.contains(word)), "{said}");
+    for (from, to, why) in [
+        ("\"mse_linear\": ", "\"mse_linear\": -", "`mse_linear` is -"),
+        (
+            "wboit-eq9",
+            "abuffer",
+            "is a second one of abuffer on view 0 of two",
+        ),
+    ] {
+        folder.write("b/results.json", results.replace(from, to));
+        for line in ["bench redraw --out b", "recommend two.toml --results b"] {
+            let said = folder.says(line, 1);
+            let words = ["results.json: ", "rows[1]: ", why, "; make it with"];
+            assert!(words.iter().all(|word| said.contains(word)), "{said}");
+        }
     }
 }
 

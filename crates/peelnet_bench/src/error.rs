@@ -29,8 +29,7 @@ pub enum EvalError {
     /// Anything else that cannot be measured: a path that is too long, a file of designs.
     #[error("{0}")]
     Unusable(String),
-    #[error("{}: is not the picture that was drawn with these rows, but one of another run; finish that run with --resume, or move the folder of \
-             pictures away", .0.display())]
+    #[error("{}: is not the picture that was drawn with these rows, but one of another run; measure again, or move the folder of pictures away", .0.display())]
     OtherPicture(PathBuf),
     #[error("interrupted")]
     Interrupted,

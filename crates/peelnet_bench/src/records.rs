@@ -4,8 +4,8 @@ use crate::designs::MOTIONS;
 use peelnet_core::methods::slabs::Kept;
 use peelnet_model::PixelLoss;
 use peelnet_render::Property;
-use serde::{Deserialize, Serialize};
-use std::fmt;
+use serde::{Deserialize, Deserializer, Serialize, de::Error as _};
+use std::{collections::HashSet, fmt};
 
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Machine {
@@ -74,11 +74,8 @@ pub struct Row {
 const LARGEST: f64 = 1e80;
 
 impl Row {
-    /// Whether a measurement can have these values.
-    ///
-    /// # Errors
-    /// The field that cannot.
-    pub fn check(&self) -> Result<(), String> {
+    /// Whether a measurement can have these values; an error names the field that it cannot.
+    fn check(&self) -> Result<(), String> {
         let fields =
             serde_json::to_value(self).expect("names are text, and floats serialise always");
         for (name, value) in fields.as_object().into_iter().flatten() {
@@ -91,6 +88,28 @@ impl Row {
         }
         Ok(())
     }
+}
+
+/// Rows with values that a measurement can have, one for each method and view.
+fn checked<'de, D: Deserializer<'de>>(rows: D) -> Result<Vec<Row>, D::Error> {
+    let rows = Vec::<Row>::deserialize(rows)?;
+    let mut known = HashSet::new();
+    for (k, row) in rows.iter().enumerate() {
+        let Row {
+            method,
+            scene,
+            view,
+            ..
+        } = row;
+        let checked = match known.insert((method, scene, view)) {
+            true => row.check(),
+            false => Err(format!(
+                "is a second one of {method} on view {view} of {scene}"
+            )),
+        };
+        checked.map_err(|why| D::Error::custom(format!("rows[{k}]: {why}")))?;
+    }
+    Ok(rows)
 }
 
 /// Of rows that were measured before there were more.
@@ -107,6 +126,7 @@ pub struct Bench {
     pub settings: Option<String>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub trained_on: Vec<String>,
+    #[serde(deserialize_with = "checked")]
     pub rows: Vec<Row>,
 }
 

@@ -1,6 +1,6 @@
 //! What lies in a dataset's folder: which files may be replaced, and what writers that died left behind.
 //!
-//! A file is a dataset's only by content: a manifest or a record that parses as ours lists it, with this length. Everything else is
+//! A file is a dataset's only by content: a manifest or a record that parses as ours lists it, with these bytes. Everything else is
 //! foreign, and is an error, never removed.
 
 use std::collections::BTreeMap;
@@ -139,7 +139,7 @@ pub(crate) fn older_files(folder: &Path) -> Result<Vec<PathBuf>, DatasetError> {
     }
     control.retain(|name| name != PARTS);
     control.sort();
-    let mut listed: BTreeMap<String, u64> = BTreeMap::new();
+    let mut listed: BTreeMap<String, (u64, String)> = BTreeMap::new();
     for name in &control {
         let parts = if name == PLAN {
             Plan::read(&store).map(|_| Vec::new())
@@ -153,13 +153,16 @@ pub(crate) fn older_files(folder: &Path) -> Result<Vec<PathBuf>, DatasetError> {
         };
         let parts = parts.map_err(|why| not_ours(folder, name, Some(why)))?;
         let files = parts.into_iter().flat_map(|part| part.files);
-        listed.extend(files.map(|f| (f.name, f.bytes)));
+        listed.extend(files.map(|f| (f.name, (f.bytes, f.sha256))));
     }
     let mut files = Vec::new();
     for name in names_in(folder)?.into_iter().filter(|n| n != META) {
         let path = folder.join(&name);
         let found = fs::symlink_metadata(&path).map_err(DatasetError::io(&path, "look at"))?;
-        if !found.is_file() || listed.get(&name) != Some(&found.len()) {
+        let is_as_listed = |own: &(u64, String)| {
+            own.0 == found.len() && hash_file(&path).is_ok_and(|hash| hash == *own)
+        };
+        if !found.is_file() || !listed.get(&name).is_some_and(is_as_listed) {
             return Err(not_ours(folder, &name, None));
         }
         files.push(path);

@@ -196,12 +196,14 @@ impl DatasetWriter {
             let reason = format!("{count} work items were not written, the first is {first}");
             return Err(DatasetError::invalid(self.store.path(), reason));
         }
+        // All of them, or nothing where a foreign file came meanwhile.
+        let older = match self.replaces {
+            true => folder::older_files(self.store.path())?,
+            false => Vec::new(),
+        };
         let _moving = self.replaces.then(|| self.moving());
-        if self.replaces {
-            // All of them, or nothing where a foreign file came meanwhile.
-            for path in folder::older_files(self.store.path())? {
-                std::fs::remove_file(&path).map_err(DatasetError::io(&path, "replace"))?;
-            }
+        for path in older {
+            std::fs::remove_file(&path).map_err(DatasetError::io(&path, "replace"))?;
         }
         // The plan again: a first writer that gave up may have taken it away.
         self.plan.agree(&*self.store)?;

@@ -3,7 +3,7 @@ use glam::{Mat4, Quat, Vec3};
 use serde::{Deserialize, Deserializer};
 
 /// Vertical fields of view that files may ask for, degrees: of smaller or larger ones, 32-bit positions on the screen keep too few bits.
-pub(crate) const FOV_Y: std::ops::RangeInclusive<f32> = 0.01..=179.0;
+const FOV_Y: std::ops::RangeInclusive<f32> = 0.01..=179.0;
 
 /// A perspective camera, with the keys of a scene file.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]

@@ -35,6 +35,15 @@ pub enum SceneError {
 }
 
 impl SceneError {
+    /// What is wrong with a file that the message names already.
+    pub(crate) fn reason(&self) -> String {
+        match self {
+            Self::Read { source, .. } => format!("cannot be read: {source}"),
+            Self::File { message, .. } => message.clone(),
+            other => other.to_string(),
+        }
+    }
+
     pub(crate) fn file(path: &Path, line: Option<usize>, message: impl Into<String>) -> Self {
         Self::File {
             path: path.to_owned(),

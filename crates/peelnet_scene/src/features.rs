@@ -7,6 +7,7 @@ use crate::{
     scene::{Object, Scene},
 };
 use serde::Serialize;
+use std::collections::HashSet;
 
 /// Whether an effect is on, and why.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -38,6 +39,7 @@ impl SceneFeatures {
         let mut variants: Vec<MaterialFlags> = Vec::new();
         let reasons = |effect: &Effect| effect.reason_in(scene).into_iter().collect();
         let mut whys: Vec<Vec<String>> = EFFECTS.iter().map(reasons).collect();
+        let mut known = HashSet::new();
         for object in &scene.objects {
             let materials = object.mesh.parts.iter().zip(&object.materials);
             // A part without triangles needs nothing.
@@ -48,7 +50,7 @@ impl SceneFeatures {
                 }
                 for (effect, why) in EFFECTS.iter().zip(&mut whys) {
                     let is_needed = effect.is_needed_by(material, object, lights);
-                    if is_needed && !why.contains(&object.name) {
+                    if is_needed && known.insert((effect.name, &object.name)) {
                         why.push(object.name.clone());
                     }
                 }

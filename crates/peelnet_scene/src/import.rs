@@ -19,8 +19,8 @@ pub(crate) struct Imported {
     pub mesh: Mesh,
     /// Point and directional lights.
     pub lights: Vec<Light>,
-    /// Cameras with a perspective projection; `far` is infinite where the file gives none.
-    pub cameras: Vec<Camera>,
+    /// Cameras with a perspective projection and their names; `far` is infinite where the file gives none.
+    pub cameras: Vec<(String, Camera)>,
     /// Whether files of its format can hold lights and blended materials.
     pub is_scene: bool,
 }

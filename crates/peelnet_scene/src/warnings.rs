@@ -53,6 +53,12 @@ impl Warnings {
         );
     }
 
+    /// Adds a warning about something whose numbers were taken as the nearest in their range.
+    pub fn clamped(&mut self, path: &Path, name: &str) {
+        let text = "numbers outside of their range are taken as the nearest in it";
+        self.about(format!("{}: {text}: ", shown(path)), &printable(name), "");
+    }
+
     /// The warnings, each on one line and printable.
     pub fn texts(&self) -> Vec<String> {
         let mut kinds: Vec<_> = self.0.iter().collect();

@@ -123,7 +123,7 @@ pub struct PathArgs {
     #[command(flatten)]
     pub pictures: PicturesArgs,
     /// Frames of the path
-    #[arg(long, value_name = "N", default_value_t = 60)]
+    #[arg(long, value_name = "N", default_value_t = 60, value_parser = clap::value_parser!(u32).range(1..))]
     pub frames: u32,
 }
 
@@ -136,7 +136,7 @@ pub struct ScalingArgs {
     #[command(flatten)]
     pub compared: MethodsArgs,
     /// Timed frames per method and step
-    #[arg(long, value_name = "N", default_value_t = 5)]
+    #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..))]
     pub frames: u32,
 }
 
@@ -157,7 +157,7 @@ pub struct EffectsArgs {
     #[arg(long, value_name = "METHOD", default_value = EFFECTS_METHOD)]
     pub method: MethodSpec,
     /// Timed frames with and without each effect, in turn
-    #[arg(long, value_name = "N", default_value_t = 5)]
+    #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..))]
     pub frames: u32,
     /// Frame size in pixels
     #[arg(long, value_name = "WxH", value_parser = size, default_value = "1024x768")]

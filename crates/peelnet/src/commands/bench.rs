@@ -126,7 +126,7 @@ fn measure_effects(context: &Context<'_>, args: &EffectsArgs) -> Result<(), Fail
     let settings = effects::Settings {
         method: args.method.clone(),
         size: args.size,
-        frames: args.frames.max(1),
+        frames: args.frames,
     };
     let gpu = context.gpu()?;
     let show = &mut show(context, "effects");
@@ -140,9 +140,6 @@ fn measure_effects(context: &Context<'_>, args: &EffectsArgs) -> Result<(), Fail
 fn along_path(context: &Context<'_>, args: &PathArgs) -> Result<(), Failure> {
     let pictures = &args.pictures;
     let (out, models) = (&pictures.compared.out, &pictures.compared.models);
-    if args.frames == 0 {
-        return Err(Failure::wrong("--frames 0: a path has at least one frame"));
-    }
     let outputs = context.results::<Along>(pictures.scenes.iter().chain(models), out)?;
     let scenes = context.scenes(&pictures.scenes)?;
     let _begun = context.begin_in(out, outputs, &scenes)?;
@@ -292,10 +289,5 @@ pub(super) fn read(path: &Path) -> Result<Results<Bench>, Failure> {
         let text = format!("{why}; make it with: peelnet bench SCENE --out DIR");
         Failure::failed(text)
     };
-    let results: Results<Bench> = Results::read(path).map_err(|e| failed(error_line(&e)))?;
-    for (k, row) in results.measured.rows.iter().enumerate() {
-        let checked = row.check();
-        checked.map_err(|why| failed(format!("{}: rows[{k}]: {why}", shown(path))))?;
-    }
-    Ok(results)
+    Results::read(path).map_err(|e| failed(error_line(&e)))
 }

@@ -11,8 +11,11 @@ use peelnet_scene::{EFFECTS, Scene, SceneFeatures, file::ENDINGS, suite};
 use serde_json::json;
 use std::{collections::HashMap, path::Path};
 
-/// Frame in which a scene's fragments are counted: view 0 at the size that `extract` and `render` use by default.
-const COUNTED_AT: [u32; 2] = [1024, 768];
+/// Frames in which a scene's fragments are counted: view 0 at the size that `extract` and `render` use by default, or at a 256th of its
+/// pixels if the scene has more triangles, or more fragments there, than are drawn within seconds on a CPU.
+const COUNTED_AT: [[u32; 2]; 2] = [[1024, 768], [64, 48]];
+const MOST_TRIANGLES: u64 = 1 << 20;
+const MOST_FRAGMENTS: u64 = 1 << 17;
 
 const TIMED_AT: [u32; 2] = [512, 384];
 
@@ -124,22 +127,32 @@ fn scene(context: &Context<'_>, path: &Path, time: bool) -> Result<(), Failure> 
             triangles[1] += if material.is_opaque() { 0 } else { n };
         }
     }
-    let gpu = context.gpu();
-    let counted = gpu.and_then(|gpu| count(&gpu, &scene, COUNTED_AT));
-    let counted = counted.unwrap_or_else(|failure| {
+    let [whole, small] = COUNTED_AT;
+    let counted = context.gpu().and_then(|gpu| {
+        let first = count(&gpu, &scene, small)?;
+        if triangles[0] > MOST_TRIANGLES || first.fragments > Some(MOST_FRAGMENTS) {
+            return Ok((small, first));
+        }
+        Ok((whole, count(&gpu, &scene, whole)?))
+    });
+    let (size, counted) = counted.unwrap_or_else(|failure| {
         // The rest is known without a GPU.
         let warning = format!("fragments were not counted: {failure}");
         context.console.warn(warning);
-        FrameStats::default()
+        (whole, FrameStats::default())
     });
     let shader = shader_bytes(&scene)?;
-    // How many of these bytes each effect brings.
+    let features = SceneFeatures::new(&scene);
+    // How many of these bytes each effect brings; one that is off needs no copy of the scene to know.
     let brought = EFFECTS.iter().map(|effect| {
-        let without = shader_bytes(&scene.without(effect)).unwrap_or(shader);
-        (effect.name, shader as i64 - without as i64)
+        let on = Some(effect).filter(|effect| features.has(effect));
+        let without = on.and_then(|effect| shader_bytes(&scene.without(effect)).ok());
+        (
+            effect.name,
+            shader as i64 - without.unwrap_or(shader) as i64,
+        )
     });
     let brought: HashMap<_, _> = brought.collect();
-    let features = SceneFeatures::new(&scene);
     let mut costs = Vec::new();
     if time {
         let settings = Settings {
@@ -154,7 +167,7 @@ fn scene(context: &Context<'_>, path: &Path, time: bool) -> Result<(), Failure> 
     }
     context.check_interrupt()?;
     let text = || {
-        let head = scene_text(&scene, triangles, &counted, &features, shader);
+        let head = scene_text(&scene, triangles, (size, counted), &features, shader);
         head + &effects_text(&features, &brought) + &costs_text(&costs)
     };
     context.console.result(text, || {
@@ -176,7 +189,7 @@ fn scene(context: &Context<'_>, path: &Path, time: bool) -> Result<(), Failure> 
             "transparent_triangles": triangles[1],
             "fragments": counted.fragments,
             "max_layers": counted.max_layers,
-            "counted_at": {"view": 0, "width": COUNTED_AT[0], "height": COUNTED_AT[1]},
+            "counted_at": {"view": 0, "width": size[0], "height": size[1]},
             "warnings": scene.warnings,
         })
     })
@@ -185,11 +198,10 @@ fn scene(context: &Context<'_>, path: &Path, time: bool) -> Result<(), Failure> 
 fn scene_text(
     scene: &Scene,
     triangles: [u64; 2],
-    counted: &FrameStats,
+    ([width, height], counted): ([u32; 2], FrameStats),
     features: &SceneFeatures,
     shader: usize,
 ) -> String {
-    let [width, height] = COUNTED_AT;
     let [all, transparent] = triangles.map(thousands);
     let counted = counted.fragments.zip(counted.max_layers);
     let fragments = counted.map_or_else(String::new, |(n, most)| {

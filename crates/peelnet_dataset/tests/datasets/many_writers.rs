@@ -261,6 +261,21 @@ fn replacing_is_all_or_nothing() {
         drop(living);
         write(folder, Format::Csv).unwrap();
     }
+    // Edited, and as long as it was.
+    let part = folder.join(PART_1);
+    let own = fs::read(&part).unwrap();
+    let mut edited = own.clone();
+    *edited.last_mut().unwrap() = b' ';
+    fs::write(&part, &edited).unwrap();
+    has(
+        &write(folder, Format::Csv).unwrap_err(),
+        &[
+            PART_1,
+            "is not a file of a dataset as its manifest lists it",
+        ],
+    );
+    assert_eq!(fs::read(&part).unwrap(), edited);
+    fs::write(&part, own).unwrap();
     // Killed while it removed the older dataset, or while it moved its own: what lists files goes last.
     let fresh = temporary();
     write(fresh.path(), Format::Npy).unwrap();

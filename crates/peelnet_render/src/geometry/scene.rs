@@ -16,7 +16,7 @@ use crate::gpu::{
 use bytemuck::Zeroable;
 use peelnet_core::absorbance::DepthWarp;
 use peelnet_scene::{Camera, EFFECTS, MaterialFlags, Scene};
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashSet};
 
 /// The order in which the transparent parts of objects are submitted to the GPU. Depths, numbers of triangles and everything that is
 /// computed of them stay as they are: only what depends on the order of drawing may change.
@@ -465,21 +465,22 @@ impl PartBuffers {
 /// colour (`blended`), a text for each variant.
 pub fn shader_bytes(scene: &Scene) -> Result<usize, RenderError> {
     let lights = scene.light_flags();
-    let mut texts = BTreeSet::new();
+    let mut variants = HashSet::new();
     for object in &scene.objects {
-        for (part, material) in object.mesh.parts.iter().zip(&object.materials) {
-            if part.triangles.is_empty() {
-                continue;
-            }
-            let features = MaterialFlags::new(material, object, lights).features();
-            let pass = match material.is_opaque() {
-                true => "scene::opaque",
-                false => "methods::blended::gather",
-            };
-            for shader in ["scene::vertex", pass] {
-                let shader = crate::shaders::link(shader, &features, &[])?;
-                texts.insert(shader.text.clone());
-            }
+        let parts = object.mesh.parts.iter().zip(&object.materials);
+        let parts = parts.filter(|(part, _)| !part.triangles.is_empty());
+        let flags = |m| (MaterialFlags::new(m, object, lights), m.is_opaque());
+        variants.extend(parts.map(|(_, material)| flags(material)));
+    }
+    let mut texts = BTreeSet::new();
+    for (flags, is_opaque) in variants {
+        let pass = match is_opaque {
+            true => "scene::opaque",
+            false => "methods::blended::gather",
+        };
+        for shader in ["scene::vertex", pass] {
+            let shader = crate::shaders::link(shader, &flags.features(), &[])?;
+            texts.insert(shader.text.clone());
         }
     }
     Ok(texts.iter().map(String::len).sum())

@@ -1,8 +1,8 @@
 use crate::{
     budget::{self, MAX_COORDINATE, MAX_LIGHTS},
-    camera::{Camera, FOV_Y},
+    camera::Camera,
     displacement::displaced,
-    error::SceneError,
+    error::{SceneError, shown},
     files::Files,
     import::Load,
     material::{Lighting, Material},
@@ -10,6 +10,7 @@ use crate::{
     scene::{Light, Object, Scene, Source},
 };
 use glam::{Mat4, Vec3};
+use peelnet_core::files::printable;
 use std::{path::Path, sync::Arc};
 
 /// Views of a file without a camera.
@@ -25,8 +26,19 @@ pub(super) fn load(path: &Path, load: Load, mut files: Files<'_>) -> Result<Scen
     let mesh = displaced(Arc::new(file.mesh), &mut materials, &mut files.budget).map_err(&fail)?;
     let bounds = sphere(&mesh).map_err(&fail)?;
     budget::check(lights.len() as u64, MAX_LIGHTS as u64, "lights").map_err(&fail)?;
-    let cameras = file.cameras.into_iter().filter_map(|c| sound(c, bounds));
-    let mut views: Vec<Camera> = cameras.collect();
+    let mut views = Vec::new();
+    for (name, camera) in file.cameras {
+        match sound(camera, bounds) {
+            Some(camera) => views.push(camera),
+            None => {
+                let before = format!(
+                    "{}: cameras whose numbers make no sense are left out: ",
+                    shown(path)
+                );
+                files.warnings.about(before, &printable(&name), "");
+            }
+        }
+    }
     if views.is_empty() {
         views = fitting_camera(bounds).orbit(VIEWS);
     }
@@ -100,10 +112,8 @@ fn sound(mut camera: Camera, (middle, radius): Sphere) -> Option<Camera> {
         let distance = (camera.position - middle).length();
         camera.far = distance + 4.0 * radius;
     }
-    let Camera { near, far, .. } = camera;
-    let is_sound = near > 0.0 && near < far && far.is_finite();
-    let is_sound = is_sound && FOV_Y.contains(&camera.fov_y_degrees);
-    (is_sound && camera.view_from_world().is_finite()).then_some(camera)
+    let is_sound = camera.check().is_ok() && camera.view_from_world().is_finite();
+    is_sound.then_some(camera)
 }
 
 fn fitting_camera((middle, radius): Sphere) -> Camera {

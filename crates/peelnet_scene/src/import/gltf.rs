@@ -107,6 +107,16 @@ pub(super) fn load(path: &Path, files: &mut Files<'_>) -> Result<Imported, Scene
         let others = format!("scenes other than number {drawn} of {all}");
         reader.missing(&others, "", "");
     }
+    for (i, node) in document.as_json().nodes.iter().enumerate() {
+        let Some(m) = node.matrix else { continue };
+        if node.translation.is_some() || node.rotation.is_some() || node.scale.is_some() {
+            let what = "translation, rotation or scale beside a matrix: node ";
+            reader.missing(what, &i.to_string(), "");
+        }
+        if [m[3], m[7], m[11], m[15]] != [0.0, 0.0, 0.0, 1.0] {
+            reader.missing("perspective of a matrix: node ", &i.to_string(), "");
+        }
+    }
     reader.scene(&scene)?;
     if document.animations().len() > 0 {
         reader.missing("animations (the first pose is drawn)", "", "");

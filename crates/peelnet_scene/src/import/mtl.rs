@@ -30,6 +30,9 @@ pub(super) struct Libraries<'a, 'f> {
     is_incomplete: bool,
 }
 
+/// Opacity and its complement differ by so much where a file rounds both to two digits.
+const ROUNDED: f32 = 0.011;
+
 impl<'a, 'f> Libraries<'a, 'f> {
     pub fn new(path: &'a Path, files: &'a mut Files<'f>) -> Self {
         Self {
@@ -84,15 +87,18 @@ impl<'a, 'f> Libraries<'a, 'f> {
         let first = self.materials.len();
         numbers.values_mut().for_each(|number| *number += first);
         for m in &materials {
+            if let (Some(d), Some(tr)) = (m.dissolve, number(m, "Tr"))
+                && (d + tr - 1.0).abs() > ROUNDED
+            {
+                let before = format!("{}: d is drawn and not Tr, which disagrees: ", shown(&file));
+                self.files.warnings.about(before, &printable(&m.name), "");
+            }
             let colors = [m.diffuse, m.specular].into_iter().flatten().flatten();
             let finish = ["Pr", "Pm"].into_iter().filter_map(|key| number(m, key));
             let mut shares = colors.chain(finish);
             let is_dark = m.emissive.is_some_and(|e| e.iter().any(|x| *x < 0.0));
             if is_dark || shares.any(|x| !(0.0..=1.0).contains(&x)) {
-                let name = format!("'{}'", printable(&m.name));
-                let text = "numbers outside of their range are taken as the nearest in it: ";
-                let before = format!("{}: {text}", shown(&file));
-                self.files.warnings.about(before, &name, "");
+                self.files.warnings.clamped(&file, &m.name);
             }
             let material = self.put_on(&file, m, material(m, lighting));
             self.materials.push(material);
@@ -103,8 +109,15 @@ impl<'a, 'f> Libraries<'a, 'f> {
 
     /// All materials. Names among those that the file uses which no library has are a warning.
     pub fn finish<'n>(self, named: impl Iterator<Item = &'n str>) -> Vec<Material> {
-        let known: HashSet<&String> = self.numbers.values().flat_map(HashMap::keys).collect();
-        for name in named.filter(|name| !self.is_incomplete && !known.contains(&name.to_string())) {
+        let mut known = HashSet::new();
+        for m in &self.materials {
+            if !known.insert(&*m.name) {
+                let before = format!("{}: materials of one name: ", shown(self.path));
+                let warnings = &mut self.files.warnings;
+                warnings.about(before, &printable(&m.name), "; the last is drawn");
+            }
+        }
+        for name in named.filter(|name| !self.is_incomplete && !known.contains(name)) {
             self.files.warnings.about(
                 format!("{}: no material ", shown(self.path)),
                 &format!("'{}'", printable(name)),
@@ -126,7 +139,7 @@ fn check(path: &Path, text: &str, warnings: &mut Warnings) -> Result<String, Sce
             SceneError::file(path, Some(number), message)
         };
         match key {
-            "Kd" | "Ks" | "Ke" | "d" | "Tr" | "Ns" => {
+            "Kd" | "Ks" | "Ke" | "d" | "Tr" | "Ns" | "Pr" | "Pm" => {
                 let halo = rest.strip_prefix("-halo ");
                 if halo.is_some() {
                     warnings.not_drawn(path, "-halo (opacity is the same all over a surface)");
@@ -159,7 +172,7 @@ fn check(path: &Path, text: &str, warnings: &mut Warnings) -> Result<String, Sce
             }
             // A filter that lets everything through.
             "Tf" if rest.split_whitespace().all(|word| word.parse() == Ok(1.0)) => {}
-            "" | "newmtl" | "Pr" | "Pm" => out += line,
+            "" | "newmtl" => out += line,
             _ if drawn_as(key).is_some() => out += line,
             _ => warnings.not_drawn(path, key),
         }

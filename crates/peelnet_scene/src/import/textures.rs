@@ -2,7 +2,7 @@
 
 use super::mtl::Libraries;
 use crate::{
-    error::{SceneError, shown},
+    error::shown,
     material::{Lighting, Material},
     texture::{Displacement, Maps, Texture, Wrap},
 };
@@ -106,12 +106,7 @@ impl Libraries<'_, '_> {
             return known.clone();
         }
         let texture = self.files.texture(file).map(Arc::new).map_err(|e| {
-            let why = match e {
-                SceneError::Read { source, .. } => format!("cannot be read: {source}"),
-                SceneError::File { message, .. } => message,
-                e => e.to_string(),
-            };
-            let after = format!(" {why}; drawn without it");
+            let after = format!(" {}; drawn without it", e.reason());
             self.files.warnings.about("", &shown(file), after);
         });
         let texture = texture.ok();
@@ -213,6 +208,9 @@ impl Libraries<'_, '_> {
             if !color.has_alpha {
                 return Some(Arc::clone(color));
             }
+            let warnings = &mut self.files.warnings;
+            let after = ": its opacity is not drawn; name it with map_d as well";
+            warnings.about("texture ", &printable(&color.name), after);
             let opaque = || color.opaque();
             let made = self.files.made("colours", [Some(color), None], opaque);
             return self.drawn(made, &format!("colours of {}", color.name));

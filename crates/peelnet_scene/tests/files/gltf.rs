@@ -263,7 +263,7 @@ fn what_is_not_drawn_is_reported() {
          scenes = [{\"nodes\": [0]}, {\"nodes\": [0]}]",
     );
     let warnings = load(&document).unwrap().warnings.join("\n");
-    let words = "image 0, which 'a.png' cannot be read & image 1, which is neither & KHR_materials_clearcoat & Lines & spot lights & \
+    let words = "image 0 ('a.png'), which cannot be read & image 1, which is neither & KHR_materials_clearcoat & Lines & spot lights & \
         scenes other than number 0 of 2";
     assert_says(&warnings, words);
     let document = changed(
@@ -273,6 +273,44 @@ fn what_is_not_drawn_is_reported() {
     let warnings = load(&document).unwrap().warnings.join("\n");
     let words = "a texture without an image & texture transforms of normal & extensions: FOO_bar & numbers outside of their range";
     assert_says(&warnings, words);
+    let document = changed(
+        "accessors/1/count = 5 ; nodes/1/matrix = [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,2] ; nodes/1/translation = [0, 0, 0] ; \
+         images = [{\"uri\": \"a.png\"}, {\"uri\": \"b.png\"}] ; textures = [{\"source\": 0}, {\"source\": 1}] ; \
+         materials/0/emissiveTexture = {\"index\": 0} ; materials/1/emissiveTexture = {\"index\": 1}",
+    );
+    let warnings = load(&document).unwrap().warnings.join("\n");
+    let words = "beyond the last triangle (mesh 0, primitive 0, mesh 0, primitive 1, mesh 0, primitive 2 and 1 more) & \
+        beside a matrix: node 1 & perspective of a matrix: node 1 & image 0 ('a.png'), image 1 ('b.png'), which cannot be read";
+    assert_says(&warnings, words);
+}
+
+/// A field of view of 516 degrees, and a place without a direction.
+#[test]
+fn cameras_without_sense_are_named() {
+    let scene = load(&changed(
+        "cameras/1 = {\"type\": \"perspective\", \"name\": \"wide\", \"perspective\": {\"yfov\": 9, \"znear\": 1}} ; \
+         cameras/2 = {\"type\": \"perspective\", \"perspective\": {\"yfov\": 0.8, \"znear\": 1}} ; \
+         nodes/0/children = [1, 3, 5, 6, 7] ; nodes/6 = {\"camera\": 1} ; nodes/7 = {\"camera\": 2, \"scale\": [0, 0, 0]}",
+    ))
+    .unwrap();
+    assert_eq!(scene.views.len(), 1);
+    assert_says(&scene.warnings.join("\n"), "left out: wide, camera 2");
+}
+
+/// As those of materials, and as scene files demand them.
+#[test]
+fn numbers_of_lights_are_taken_as_the_nearest_in_their_range() {
+    let lights = "extensions/KHR_lights_punctual/lights";
+    let scene = load(&changed(&format!(
+        "{lights}/0/intensity = -30 ; {lights}/1/color = [-5, 0.5, 2] ; {lights}/1/name = \"sun\""
+    )))
+    .unwrap();
+    let [point, sun] = &scene.lights[..] else {
+        panic!("{:?}", scene.lights);
+    };
+    assert_eq!((point.intensity, sun.color), (0.0, [0.0, 0.5, 1.0]));
+    let warnings = scene.warnings.join("\n");
+    assert_says(&warnings, "nearest in it: light 0, sun");
 }
 
 /// A rotation of any length turns, and does nothing else.

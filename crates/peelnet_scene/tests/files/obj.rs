@@ -58,6 +58,8 @@ newmtl m ; d x => a.mtl:2: 'd x' holds no finite number
 newmtl m ; d nan => a.mtl:2: 'd nan' holds no finite number
 newmtl m ;  ; Tr 1.5 => a.mtl:3: 'Tr 1.5' must lie in 0 … 1
 newmtl m ; Tr x => a.mtl:2: 'Tr x' holds no finite number
+newmtl m ; Pm abc => a.mtl:2: 'Pm abc' holds no finite number
+newmtl m ; Pr xyz => a.mtl:2: 'Pr xyz' holds no finite number
 ";
 const BAD_STATEMENTS: &str = "
 v nan 0 0 ; f 1 2 3 => a.obj:5: 'v nan 0 0' holds no finite numbers
@@ -145,6 +147,21 @@ fn images_of_materials() {
     assert_says(&warnings.join("\n"), words);
 }
 
+#[test]
+fn what_one_statement_says_and_another_does_not_is_reported() {
+    let red = image(&[[200, 0, 0, 9]; 2]);
+    let mtl =
+        b"newmtl m\nd 0.5\nTr 0.9\nnewmtl n\nd 0.33\nTr 0.66\nmap_Kd a.png\nnewmtl m\nKd 0 0 1\n";
+    let obj = format!("mtllib a.mtl\n{QUAD}usemtl m\nf 1 2 3\n");
+    let files: [(&str, &[u8]); 3] = [("a.obj", obj.as_bytes()), ("a.mtl", mtl), ("a.png", &red)];
+    let (mesh, warnings, _) = load_mesh(&files).unwrap();
+    assert_eq!(mesh.parts[0].material.color, [0.0, 0.0, 1.0]);
+    assert_eq!(warnings.len(), 3, "{warnings:?}");
+    let words = "a.mtl: d is drawn and not Tr, which disagrees: m & texture a.png: its opacity is not drawn & \
+        a.obj: materials of one name: m; the last is drawn";
+    assert_says(&warnings.join("\n"), words);
+}
+
 /// Strengths of one height field are a texture and a scale each.
 #[test]
 fn strengths_share_their_normals() {
@@ -204,7 +221,7 @@ fn materials_as_old_exporters_write_them() {
     assert_eq!(n.lighting, Lighting::Unlit);
     let warnings = warnings.join("\n");
     assert_eq!(warnings.matches("-halo").count(), 1, "{warnings}");
-    assert_says(&warnings, "nearest in it: 'n' & 'o' & 'p'");
+    assert_says(&warnings, "nearest in it: n, o, p");
     // The same where the text is not UTF-8: the first line is a vertex still.
     let latin = [b"\xef\xbb\xbf", QUAD.as_bytes(), b"# caf\xe9\nf 1 2 3\n"].concat();
     let (mesh, ..) = load_mesh(&[("a.obj", &latin)]).unwrap();

@@ -485,7 +485,7 @@ pub fn room() -> Vec<(&'static str, Vec<u8>)> {
         ("room/meshes/../a buffer.bin", buffer),
         ("room/meshes/a.mtl", mtl.into()),
         ("room/meshes/a.obj", SQUARE.into()),
-        ("room/meshes/a.png", image(&[[9; 4]])),
+        ("room/meshes/a.png", image(&[[9, 9, 9, 255]])),
         ("room/meshes/b.gltf", gltf.to_string().into()),
         ("room/meshes/c.png", image(&[[9; 4]])),
         ("room/scene.toml", format!("{CAMERA}{objects}").into()),

@@ -1,5 +1,5 @@
 use super::nodes::Reader;
-use crate::{error::SceneError, files::MAX_MESH};
+use crate::files::MAX_MESH;
 use base64::{
     Engine as _,
     alphabet::STANDARD,
@@ -20,12 +20,11 @@ impl Reader<'_, '_> {
         if let Some(data) = uri.strip_prefix("data:") {
             return read_data(data, limit).map(Arc::new);
         }
-        let fail = |what: &dyn std::fmt::Display| format!("'{}' {what}", printable(uri));
         let absolute = uri
             .strip_prefix("file://")
             .or_else(|| uri.strip_prefix("file:"));
         if absolute.is_none() && uri.contains(':') {
-            return Err(fail(&"has a scheme that is not read"));
+            return Err("has a scheme that is not read".to_owned());
         }
         let name = absolute.unwrap_or(uri);
         let decoded = urlencoding::decode(name);
@@ -36,10 +35,7 @@ impl Reader<'_, '_> {
             Ok(decoded) if decoded != name => read(&decoded).or_else(|e| read(name).map_err(|_| e)),
             _ => read(name),
         };
-        found.map_err(|e| match e {
-            SceneError::Read { source, .. } => fail(&format!("cannot be read: {source}")),
-            e => e.to_string(),
-        })
+        found.map_err(|e| e.reason())
     }
 
     /// Reads the buffers of a document; `blob` is the binary chunk of a GLB file.
@@ -53,7 +49,10 @@ impl Reader<'_, '_> {
                 gltf::buffer::Source::Bin => {
                     Arc::new(blob.take().ok_or("there is no binary chunk")?)
                 }
-                gltf::buffer::Source::Uri(uri) => self.read_uri(uri, MAX_MESH)?,
+                gltf::buffer::Source::Uri(uri) => {
+                    let read = self.read_uri(uri, MAX_MESH);
+                    read.map_err(|e| format!("'{}' {e}", printable(uri)))?
+                }
             };
             let (index, held, needed) = (buffer.index(), bytes.len(), buffer.length());
             if held < needed {

@@ -1,8 +1,7 @@
 //! Materials, their textures, and the UV sets and transforms of these.
 
-use super::nodes::{Reader, finite};
+use super::nodes::{Reader, finite, name_of};
 use crate::{
-    error::shown,
     files::MAX_IMAGE,
     material::{Lighting, Material},
     specular_glossiness::{Values, convert},
@@ -91,12 +90,17 @@ impl Reader<'_, '_> {
                 false => found,
             })
         } else {
-            let number = || format!("image {}", image.index());
-            let name = image.name().map_or_else(number, str::to_owned);
+            let name = name_of(image.name(), "image", image.index());
             match self.decode(image, &name) {
                 Ok(texture) => Some(Arc::new(texture)),
                 Err(why) => {
-                    self.missing("", &printable(&name), &format!(", which {why}"));
+                    let shown = match image.source() {
+                        gltf::image::Source::Uri { uri, .. } if !uri.starts_with("data:") => {
+                            format!("{} ('{}')", printable(&name), printable(uri))
+                        }
+                        _ => printable(&name).into_owned(),
+                    };
+                    self.missing("", &shown, &format!(", which {why}"));
                     None
                 }
             }
@@ -250,10 +254,7 @@ impl Reader<'_, '_> {
             material.color = material.color.map(|c| c * (1.0 - passing));
         }
         if is_beyond {
-            let text = "numbers outside of their range are taken as the nearest in it: ";
-            let before = format!("{}: {text}", shown(self.path));
-            let name = printable(&material.name);
-            self.files.warnings.about(before, &name, "");
+            self.files.warnings.clamped(self.path, &material.name);
         }
         (material, placement)
     }

@@ -25,13 +25,14 @@ pub(super) struct Reader<'a, 'f> {
     pub loaded: Imported,
 }
 
-/// A value within its bounds; the lower one instead of a value that is not finite.
+/// A value within its bounds; the lower one instead of NaN.
 pub(super) fn finite(x: f32, low: f32, high: f32) -> f32 {
-    if x.is_finite() {
-        x.clamp(low, high)
-    } else {
-        low
-    }
+    if x.is_nan() { low } else { x.clamp(low, high) }
+}
+
+/// The name of an element, or its kind and number.
+pub(super) fn name_of(name: Option<&str>, kind: &str, number: usize) -> String {
+    name.map_or_else(|| format!("{kind} {number}"), str::to_owned)
 }
 
 /// Counts of a file may be anything.
@@ -149,27 +150,39 @@ impl<'a, 'f> Reader<'a, 'f> {
             }
         }
         if let Some(light) = node.light() {
-            let source = match light.kind() {
-                Kind::Point => Some(Source::Point(world.transform_point3(Vec3::ZERO))),
+            let (source, kind) = match light.kind() {
+                Kind::Point => {
+                    let place = world.transform_point3(Vec3::ZERO);
+                    (Some(Source::Point(place)), "")
+                }
                 // It shines along −z.
                 Kind::Directional => {
-                    let toward = world.transform_vector3(Vec3::Z);
-                    Some(Source::Toward(toward.normalize_or(Vec3::Y)))
+                    let toward = world.transform_vector3(Vec3::Z).try_normalize();
+                    (toward.map(Source::Toward), "lights without a direction")
                 }
-                Kind::Spot { .. } => {
-                    self.missing("spot lights", "", "");
-                    None
-                }
+                Kind::Spot { .. } => (None, "spot lights"),
             };
-            self.loaded.lights.extend(source.map(|source| Light {
-                source,
-                color: light.color(),
-                intensity: light.intensity(),
-            }));
+            let color = light.color().map(|c| finite(c, 0.0, 1.0));
+            let intensity = finite(light.intensity(), 0.0, f32::MAX);
+            if (color, intensity) != (light.color(), light.intensity()) {
+                let name = name_of(light.name(), "light", light.index());
+                self.files.warnings.clamped(self.path, &name);
+            }
+            match source {
+                None => self.missing(kind, "", ""),
+                Some(source) => self.loaded.lights.push(Light {
+                    source,
+                    color,
+                    intensity,
+                }),
+            }
         }
         if let Some(camera) = node.camera() {
             match camera.projection() {
-                Projection::Perspective(p) => self.loaded.cameras.extend(view(&p, world)),
+                Projection::Perspective(p) => {
+                    let name = name_of(camera.name(), "camera", camera.index());
+                    self.loaded.cameras.push((name, view(&p, world)));
+                }
                 Projection::Orthographic(_) => self.missing("orthographic cameras", "", ""),
             }
         }
@@ -177,16 +190,16 @@ impl<'a, 'f> Reader<'a, 'f> {
     }
 }
 
-/// A camera that looks along −z; `None` where its place makes no sense.
-fn view(p: &gltf::camera::Perspective<'_>, world: Mat4) -> Option<Camera> {
-    let direction = |v: Vec3| world.transform_vector3(v).try_normalize();
+/// A camera that looks along −z.
+fn view(p: &gltf::camera::Perspective<'_>, world: Mat4) -> Camera {
+    let direction = |v: Vec3| world.transform_vector3(v).normalize_or_zero();
     let position = world.transform_point3(Vec3::ZERO);
-    Some(Camera {
+    Camera {
         position,
-        target: position + direction(Vec3::NEG_Z)?,
-        up: direction(Vec3::Y)?,
+        target: position + direction(Vec3::NEG_Z),
+        up: direction(Vec3::Y),
         fov_y_degrees: p.yfov().to_degrees(),
         near: p.znear(),
         far: p.zfar().unwrap_or(f32::INFINITY),
-    })
+    }
 }

@@ -28,16 +28,7 @@ impl Reader<'_, '_> {
             return Ok(());
         }
         let (material, placement) = self.material(&primitive.material());
-        if primitive.morph_targets().len() > 0 {
-            self.missing("morph targets", "", "");
-        }
-        let vertices = primitive.get(&Semantic::Positions).map(|a| a.count());
-        for (semantic, accessor) in primitive.attributes() {
-            if Some(accessor.count()) != vertices {
-                let what = "attributes of another count than the positions: ";
-                self.missing(what, &semantic.to_string(), "");
-            }
-        }
+        self.report_unused(primitive, &place);
         let fail = |message: String| self.fail(format!("{place}{message}"));
         check_accessors(primitive).map_err(fail)?;
         let buffers = &self.buffers;
@@ -120,6 +111,25 @@ impl Reader<'_, '_> {
         let warnings = &mut self.files.warnings;
         self.loaded.mesh.append(part, &self.not_drawn, warnings);
         Ok(())
+    }
+
+    /// Warns of what a primitive has beside its triangles.
+    fn report_unused(&mut self, primitive: &gltf::Primitive<'_>, place: &str) {
+        if primitive.morph_targets().len() > 0 {
+            self.missing("morph targets", "", "");
+        }
+        let vertices = primitive.get(&Semantic::Positions).map(|a| a.count());
+        for (semantic, accessor) in primitive.attributes() {
+            if Some(accessor.count()) != vertices {
+                let what = "attributes of another count than the positions: ";
+                self.missing(what, &semantic.to_string(), "");
+            }
+        }
+        let corners = primitive.indices().map(|a| a.count()).or(vertices);
+        let is_list = primitive.mode() == Mode::Triangles;
+        if corners.is_some_and(|n| n < 3 || is_list && !n.is_multiple_of(3)) {
+            self.missing("vertices beyond the last triangle (", place, ")");
+        }
     }
 }
 
