@@ -15,7 +15,9 @@ import package::scene::surface::Surface;
 // shader happen before that test.
 fn visible(surface: Surface) -> bool {
     @if(mapped) remember_footprint(surface.uv);
-    let pixel = vec2u(surface.position.xy);
+    // Of a pass over one pixel of 64, the middle one of those.
+    @if(tiles) let pixel = vec2u(surface.position.xy * 8.0);
+    @else let pixel = vec2u(surface.position.xy);
     @if(sampled) {
         if pixel_hash(camera.sample_seed, camera.sample_view, pixel.x, pixel.y) > camera.sample_threshold {
             return false;

@@ -10,7 +10,7 @@ use naga::{
     valid::{Capabilities, ValidationFlags, Validator},
 };
 use peelnet_core::random::Random;
-use peelnet_export::{Blend, Description, Language, Options, SelfTest, Target};
+use peelnet_export::{Blend, Description, Language, Options, SelfTest, Target, verify};
 use peelnet_model::{Model, Recipe};
 use peelnet_render::gpu::Gpu;
 use peelnet_tests::{assert_near, gpu, shipped};
@@ -87,11 +87,15 @@ fn descriptions_lead_to_the_colour_of_the_self_test() {
             continue;
         };
         let text = peelnet_export::wgsl(&model).unwrap();
+        verify(&gpu, &model, &text).unwrap();
         let description = Description::new(recipe);
         let (near, far) = (pixel.near, pixel.far);
         let zeta = format!("let zeta = peelnet_zeta(z, f32({near}), f32({far}));");
         let has_zeta = text.contains("fn peelnet_zeta(");
         let zeta = if has_zeta { &zeta } else { "" };
+        let reads_around = text.contains("fn peelnet_even(");
+        let around = "let quantiles = peelnet_even();\n    let noise = 0.5;";
+        let around = if reads_around { around } else { "" };
         let mut body = String::new();
         for pass in description.passes {
             body.extend(pass.targets.iter().map(declared));
@@ -117,6 +121,7 @@ fn descriptions_lead_to_the_colour_of_the_self_test() {
 @compute @workgroup_size(64)
 fn main(@builtin(global_invocation_id) id: vec3u) {{
     if id.x >= arrayLength(&answers) {{ return; }}
+    {around}
 {body}
     let background = vec3f({r}, {g}, {b}) + 0.0 * unused[0].xyz;
     answers[id.x] = {resolve};

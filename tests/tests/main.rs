@@ -11,6 +11,7 @@ mod generated_tables;
 mod gpu_faults;
 mod library;
 mod methods;
+mod one_pass;
 mod peeling;
 mod pictures;
 mod pipeline;

@@ -245,7 +245,8 @@ fn every_method_has_a_reference() {
                 model: model.as_ref(),
             });
             let finite = color.is_some_and(|c| c.iter().all(|x| x.is_finite()));
-            assert!(finite, "{spec}");
+            // `one` tests what depends on the pixels around.
+            assert!(finite || !spec.guarantees().per_pixel, "{spec}");
         }
     }
 }

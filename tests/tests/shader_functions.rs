@@ -1,10 +1,10 @@
 //! Functions that exist once in Rust and once in WGSL: evaluated on the GPU and compared.
 
 use peelnet_core::{
-    absorbance::DepthWarp,
+    absorbance::{DepthWarp, absorbance},
     fragment::{Fragment, points},
     guards,
-    methods::{anchored, deep, dfaoit, nmt, slabs},
+    methods::{anchored, deep, dfaoit, nmt, one, slabs},
     random::Random,
     statistics::SumPrecision,
     weights::Weight,
@@ -12,8 +12,8 @@ use peelnet_core::{
 use peelnet_model::{
     Recipe,
     inputs::{
-        ANCHORED, AnchoredInputs, DFAOIT, DfaoitInputs, Feature, NMT, NmtInputs, SlabInputs,
-        THESIS, ThesisInputs, values,
+        ANCHORED, AnchoredInputs, DFAOIT, DfaoitInputs, Feature, NINE_OF_SUMS, NMT, NmtInputs,
+        OneInputs, SlabInputs, THESIS, ThesisInputs, values,
     },
 };
 use peelnet_render::gpu::Gpu;
@@ -211,6 +211,32 @@ fn random_pixels() -> Vec<Vec<Fragment>> {
     (0..200).map(pixel).collect()
 }
 
+fn compare_sums(recipe: Recipe, of: &OneInputs, pixels: &[Vec<Fragment>], warp: &DepthWarp) {
+    let exact = SumPrecision::Exact;
+    compare_features(
+        recipe,
+        &NINE_OF_SUMS,
+        pixels.iter().flat_map(|pixel| {
+            let each = pixel.iter().map(|f| {
+                let depth = one::depth_of(warp, f.depth);
+                (absorbance(f.alpha), depth, f.color)
+            });
+            let kept = one::Kept::gather(each, of.design, one::Around::NONE, exact);
+            kept.rest().ahead.into_iter().take(of.design.middles.len())
+        }),
+        |a| {
+            let shares = [a.before, a.own, a.previous, a.next];
+            [
+                &[a.absorbance, a.total][..],
+                &shares,
+                &[a.alpha, a.place, a.number],
+            ]
+            .concat()
+        },
+        "let ahead = PeelnetAhead(x0, x1, x2, x3, x4, x5, x6, x7, x8);",
+    );
+}
+
 #[test]
 fn features_are_the_same_in_rust_and_wgsl() {
     let pixels = random_pixels();
@@ -289,6 +315,8 @@ fn features_are_the_same_in_rust_and_wgsl() {
                 },
                 "let between = PeelnetBetween(x0, x1, x2, x3, x4, x5, x6, x7);",
             );
+        } else if let Some(of) = inputs.downcast_ref::<OneInputs>() {
+            compare_sums(recipe, of, &pixels, &warp);
         } else {
             panic!("{recipe}: nothing is known for its inputs");
         }

@@ -95,7 +95,13 @@ pub fn image_name(scene: &str, method: &str) -> String {
         }
         plain
     };
-    format!("{}-{}.png", plain(scene), plain(method))
+    // `x-deep` drawn by `one` is not `x` drawn by `deep-one`.
+    let scene = plain(scene);
+    let scene = match scene.strip_suffix("-deep") {
+        Some(before) => format!("{before}_2ddeep"),
+        None => scene,
+    };
+    format!("{scene}-{}.png", plain(method))
 }
 
 fn picture_hash(path: &Path) -> Result<String, EvalError> {
@@ -360,7 +366,9 @@ mod tests {
     #[test]
     fn names_that_differ_have_pictures_that_differ() {
         let long = "x".repeat(5000);
-        let mut scenes: Vec<&str> = "a/b a_b a:b A a ä Ä a_2fb .".split(' ').collect();
+        let mut scenes: Vec<&str> = "a/b a_b a:b A a ä Ä a_2fb . a-deep a_2ddeep"
+            .split(' ')
+            .collect();
         scenes.extend(["", &long, &long[1..]]);
         let methods = MethodSpec::curve();
         let mut names = BTreeSet::new();
@@ -372,11 +380,11 @@ mod tests {
             }
         }
         assert_eq!(names.len(), scenes.len() * methods.len());
-        // A '-' stands between the names: no method's name ends in another one's behind a '-'.
+        // A '-' stands between the names: no method's name ends in another one's behind a '-', unless behind `deep-`.
         for method in METHODS {
             let ending = format!("-{}", method.name);
-            let mut names = METHODS.iter().map(|m| m.name);
-            assert!(!names.any(|name| name.ends_with(&ending)), "{ending}");
+            let mut begins = METHODS.iter().filter_map(|m| m.name.strip_suffix(&ending));
+            assert!(begins.all(|begin| begin == "deep"), "{ending}");
         }
     }
 }

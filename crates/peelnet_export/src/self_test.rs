@@ -2,8 +2,11 @@
 
 use crate::literal::float;
 use peelnet_core::{
-    absorbance::DepthWarp, fragment::worked_example, methods::anchored::composite_weighted,
-    random::Random, statistics::SumPrecision,
+    absorbance::DepthWarp,
+    fragment::worked_example,
+    methods::{anchored::composite_weighted, one::Around},
+    random::Random,
+    statistics::SumPrecision,
 };
 use peelnet_model::{Model, inputs::Observed};
 use serde::Serialize;
@@ -126,6 +129,7 @@ fn pixel(model: &Model) -> Option<Pixel> {
         fragments: &points,
         warp,
         precision: SumPrecision::Exact,
+        around: Around::NONE,
     };
     let weights = model.transmittances(&observed);
     if weights.is_empty() {
@@ -136,7 +140,9 @@ fn pixel(model: &Model) -> Option<Pixel> {
     // The nearest and the farthest fragment are known.
     let known = weights.iter().enumerate();
     let known = known.map(|(k, &weight)| (weight, k == 0 || k == last));
-    let color = composite_weighted(&fragments, BACKGROUND, inputs.known_apart(), known);
+    let color = model.color(&fragments, BACKGROUND, &warp);
+    let color = color
+        .unwrap_or_else(|| composite_weighted(&fragments, BACKGROUND, inputs.known_apart(), known));
     let drawn = fragments.iter().zip(&weights).map(|(f, w)| Drawn {
         z: f.depth,
         alpha: f.alpha,

@@ -4,7 +4,11 @@ use std::io::ErrorKind;
 use std::{iter::Sum, path::Path};
 
 use num_traits::{Float, cast};
-use peelnet_core::mlp::{Layer, Mlp};
+use peelnet_core::{
+    absorbance::DepthWarp,
+    fragment::Fragment,
+    mlp::{Layer, Mlp},
+};
 use sha2::{Digest, Sha256};
 
 use crate::error::{ModelError, Problem};
@@ -169,15 +173,28 @@ impl Model {
     /// none.
     pub fn transmittances(&self, pixel: &Observed<'_>) -> Vec<f64> {
         let inputs = self.meta.recipe.inputs;
-        let network = |raw: &[f64]| -> f64 {
-            if inputs.are_columns() {
-                let raw: Vec<f32> = raw.iter().map(|&x| x as f32).collect();
-                self.forward_raw(&raw)[0].into()
-            } else {
-                self.forward_raw(raw)[0]
-            }
-        };
-        inputs.transmittances(pixel, &network)
+        inputs.transmittances(pixel, &|raw| self.first(raw))
+    }
+
+    /// The first output for raw inputs, as the kind of inputs evaluates it.
+    fn first(&self, raw: &[f64]) -> f64 {
+        if self.meta.recipe.inputs.are_columns() {
+            let raw: Vec<f32> = raw.iter().map(|&x| x as f32).collect();
+            self.forward_raw(&raw)[0].into()
+        } else {
+            self.forward_raw(raw)[0]
+        }
+    }
+
+    /// The colour of a pixel of which nothing is known of those around, where it is no weighted mean of its fragments' colours.
+    pub fn color(
+        &self,
+        fragments: &[Fragment],
+        background: [f32; 3],
+        warp: &DepthWarp,
+    ) -> Option<[f32; 3]> {
+        let inputs = self.meta.recipe.inputs;
+        inputs.color(fragments, background, warp, &|raw| self.first(raw))
     }
 
     /// The network's outputs for what is known of a fragment or a pixel.

@@ -5,11 +5,16 @@
 
 use std::{fmt, ops::Deref, str::FromStr};
 
-use peelnet_core::{methods::slabs::Design, mlp::Activation, statistics::SumPrecision};
+use peelnet_core::{
+    methods::{one, slabs::Design},
+    mlp::Activation,
+    statistics::SumPrecision,
+};
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
 
 use crate::inputs::{
-    AnchoredInputs, DfaoitInputs, FIVE, NINE, NetworkInputs, NmtInputs, SlabInputs, ThesisInputs,
+    AnchoredInputs, DfaoitInputs, FIVE, NINE, NetworkInputs, NmtInputs, OneInputs, SlabInputs,
+    ThesisInputs,
 };
 use crate::output::Output;
 
@@ -221,6 +226,28 @@ impl Recipe {
         ..FRACTIONS
     });
 
+    /// Three sums of one geometry pass.
+    pub const ONE: Self = Self(&Declaration {
+        name: "one",
+        method: "deep-one",
+        inputs: &OneInputs {
+            design: one::Design::ONE,
+        },
+        output: Output::AnchoredShare,
+        ..FRACTIONS
+    });
+
+    /// Six.
+    pub const ONE_WIDE: Self = Self(&Declaration {
+        name: "one-wide",
+        method: "deep-one-wide",
+        inputs: &OneInputs {
+            design: one::Design::WIDE,
+        },
+        output: Output::AnchoredShare,
+        ..FRACTIONS
+    });
+
     /// The pixel's moments and its two ends: the cheapest network that beats moments.
     pub const ANCHORED_SMALL: Self = Self(&Declaration {
         name: "anchored-small",
@@ -263,11 +290,13 @@ impl Recipe {
     });
 
     /// All recipes.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 10] = [
         Self::THESIS,
         Self::SMALL,
         Self::MEDIUM,
         Self::LARGE,
+        Self::ONE,
+        Self::ONE_WIDE,
         Self::ANCHORED_SMALL,
         Self::ANCHORED_MEDIUM,
         Self::NMT,

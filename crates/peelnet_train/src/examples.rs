@@ -1,14 +1,17 @@
 //! From views of a dataset to the examples of a recipe.
 
-use peelnet_core::absorbance::DepthWarp;
+use peelnet_core::absorbance::{DepthWarp, absorbance};
 use peelnet_core::files::shown;
 use peelnet_core::methods::known::KnownFragment;
+use peelnet_core::methods::one::{
+    Around, Quantiles, TILE, TILE_BINS, Tiles, depth_of, seen_behind_nearest,
+};
 use peelnet_core::statistics::SumPrecision;
 use peelnet_dataset::{
     Column, Dataset, DatasetError, FragmentBatch, Part, Split, Subset, check_rows,
 };
 use peelnet_model::Recipe;
-use peelnet_model::inputs::{Examples, Observed, PeeledPixel};
+use peelnet_model::inputs::{Examples, Observed, PeeledPixel, PixelSums};
 
 use crate::draws::Sample;
 use crate::error::TrainError;
@@ -41,6 +44,40 @@ impl View<'_> {
         Ok(DepthWarp::new(near.min(far).into(), far.into()))
     }
 
+    /// What its pixels have in common, as a recipe's networks know it.
+    pub(crate) fn frame(self, recipe: Recipe) -> Result<Frame, TrainError> {
+        let warp = self.warp()?;
+        let around = recipe.inputs.reads_around();
+        let tiles = around.then(|| self.tiles(&warp)).transpose()?;
+        Ok(Frame { warp, tiles })
+    }
+
+    /// The quantiles of its tiles, of each the pixel of the dataset that is nearest to the one that a renderer looks at.
+    fn tiles(self, warp: &DepthWarp) -> Result<Tiles, TrainError> {
+        let [columns, rows] = [self.part.width, self.part.height].map(|n| n.div_ceil(TILE).max(1));
+        let none = (u32::MAX, [0.0; TILE_BINS]);
+        let mut seen = vec![none; (columns * rows) as usize];
+        for batch in self.batches() {
+            let batch = batch?;
+            for pixel in batch.pixels() {
+                let (x, y) = (batch.x[pixel.start], batch.y[pixel.start]);
+                let from_middle = |n: u32| (n % TILE).abs_diff(TILE / 2).pow(2);
+                let distance = from_middle(x) + from_middle(y);
+                let tile = y / TILE * columns + x / TILE;
+                let found = seen.get_mut(tile as usize).filter(|best| distance < best.0);
+                if let Some(best) = found {
+                    let rows = batch.linear_depth[pixel.clone()].iter();
+                    let rows = rows.zip(&batch.one_minus_alpha[pixel]);
+                    let fragments = rows.map(|(&z, &t)| (absorbance(1.0 - t), depth_of(warp, z)));
+                    let fragments: Vec<_> = fragments.collect();
+                    *best = (distance, seen_behind_nearest(&fragments));
+                }
+            }
+        }
+        let seen: Vec<_> = seen.into_iter().map(|(_, seen)| seen).collect();
+        Ok(Tiles::new(columns, &seen))
+    }
+
     /// Batches of whole pixels.
     pub(crate) fn batches(self) -> impl Iterator<Item = Result<FragmentBatch, DatasetError>> {
         let is_ours = move |p: &Part| p.index == self.part.index;
@@ -48,10 +85,24 @@ impl View<'_> {
     }
 }
 
+/// What the pixels of a view have in common.
+pub(crate) struct Frame {
+    pub(crate) warp: DepthWarp,
+    pub(crate) tiles: Option<Tiles>,
+}
+
+impl Frame {
+    fn around(&self, place: [u32; 2]) -> Around {
+        let tiles = self.tiles.as_ref();
+        let quantiles = tiles.map_or(Quantiles::EVEN, |tiles| tiles.at(place));
+        Around::new(quantiles, place)
+    }
+}
+
 /// Calls `each` with every pixel of a batch and its place: the number of its view, x, y.
 pub(crate) fn each_pixel(
     batch: &FragmentBatch,
-    warp: DepthWarp,
+    frame: &Frame,
     precision: SumPrecision,
     mut each: impl FnMut([u32; 3], &PeeledPixel<'_>),
 ) {
@@ -66,8 +117,9 @@ pub(crate) fn each_pixel(
         let pixel = PeeledPixel {
             observed: Observed {
                 fragments: &points[rows.clone()],
-                warp,
+                warp: frame.warp,
                 precision,
+                around: frame.around([place[1], place[2]]),
             },
             transmittance: &batch.transmittance[rows.clone()],
             colors: &colors[rows.clone()],
@@ -126,10 +178,11 @@ pub(crate) fn gather<'a>(
         sample.begin(view.part.rows);
         // Columns of a dataset need no warp, and have no weights.
         let is_weighed = data.weights.is_some();
-        let warp = if is_weighed {
-            view.warp()?
+        let frame = if is_weighed {
+            view.frame(recipe)?
         } else {
-            DepthWarp::new(1.0, 1.0)
+            let warp = DepthWarp::new(1.0, 1.0);
+            Frame { warp, tiles: None }
         };
         let (mut sum, mut pixels) = (0.0, 0);
         for batch in view.batches() {
@@ -138,7 +191,7 @@ pub(crate) fn gather<'a>(
                 let file = view.dataset.path().join(&view.part.files[0].name);
                 TrainError::rows(&shown(&file), &problem)
             })?;
-            each_pixel(&batch, warp, recipe.sums, |[index, x, y], pixel| {
+            each_pixel(&batch, &frame, recipe.sums, |[index, x, y], pixel| {
                 if !sample.keep([x, y], pixel.observed.fragments.len()) {
                     return;
                 }
@@ -157,6 +210,7 @@ pub(crate) fn gather<'a>(
                     Examples::Pixel(fragments) => {
                         pixel_example(data, pixel, subset, recipe.inputs.known_apart(), &fragments);
                     }
+                    Examples::Sums(pixel) => sums_example(data, subset, pixel),
                 }
             });
             after(number, batch.len(), data)?;
@@ -219,6 +273,35 @@ fn pixel_example(
         }
     }
     fixed[LEFT] = left.max(0.0) as f32;
+    if let Some(pixels) = &mut data.pixels {
+        pixels.first.push(first);
+        for (column, value) in pixels.fixed.iter_mut().zip(fixed) {
+            column.push(value);
+        }
+    }
+    data.end_example(1.0, subset);
+}
+
+/// The sums of a pixel. What is known is left out of the exact colour.
+fn sums_example(data: &mut TrainingData, subset: Subset, pixel: PixelSums) {
+    let first = data.rows_held() as u32;
+    let mut fixed = [0.0f32; 8];
+    fixed[LEFT] = pixel.left as f32;
+    for (fixed, c) in fixed[EXACT..].iter_mut().zip(pixel.color) {
+        *fixed = c as f32;
+    }
+    for sum in pixel.sums {
+        data.push_row(sum.inputs, [sum.exact]);
+        if let Some(pixels) = &mut data.pixels {
+            pixels.rows[RESIDUAL].push(sum.absorbance as f32);
+            pixels.rows[ALPHA].push(sum.weight as f32);
+            for (k, c) in sum.color.into_iter().enumerate() {
+                pixels.rows[COLOR + k].push(c as f32);
+                // The loss counts what is exact of each row once more.
+                fixed[EXACT + k] -= (c * sum.exact) as f32;
+            }
+        }
+    }
     if let Some(pixels) = &mut data.pixels {
         pixels.first.push(first);
         for (column, value) in pixels.fixed.iter_mut().zip(fixed) {

@@ -292,9 +292,9 @@ pub fn held_out_errors(
                 part,
                 split: Split::whole(Subset::HeldOut),
             };
-            let warp = view.warp()?;
+            let frame = view.frame(model.meta.recipe)?;
             for batch in view.batches() {
-                each_pixel(&batch?, warp, precision, |_, pixel| {
+                each_pixel(&batch?, &frame, precision, |_, pixel| {
                     let weights = model.transmittances(&pixel.observed);
                     for (w, &t) in weights.iter().zip(pixel.transmittance) {
                         sum.0 += (w - f64::from(t)).abs();

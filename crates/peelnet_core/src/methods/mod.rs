@@ -9,6 +9,7 @@ pub mod dfaoit;
 pub mod known;
 pub mod moments;
 pub mod nmt;
+pub mod one;
 pub mod over;
 pub mod slabs;
 pub mod wboit;

@@ -6,6 +6,7 @@ mod dfaoit;
 mod feature;
 mod network_inputs;
 mod nmt;
+mod one;
 mod slabs;
 mod surroundings;
 mod thesis;
@@ -13,8 +14,11 @@ mod thesis;
 pub use anchored::*;
 pub use dfaoit::*;
 pub use feature::{About, Feature, Shared, values};
-pub use network_inputs::{Examples, Forward, NetworkInputs, Observed, PeeledPixel, RowExample};
+pub use network_inputs::{
+    Examples, Forward, GuessedSum, NetworkInputs, Observed, PeeledPixel, PixelSums, RowExample,
+};
 pub use nmt::*;
+pub use one::*;
 pub use slabs::*;
 pub use surroundings::{Blend, Pass, Surroundings, Target, Value, ValueKind};
 pub use thesis::*;

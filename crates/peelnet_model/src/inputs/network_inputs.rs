@@ -3,9 +3,11 @@
 use super::{feature::About, surroundings::Surroundings};
 use peelnet_core::{
     absorbance::DepthWarp,
+    fragment::Fragment,
     methods::{
         known::KnownFragment,
         moments::{self, Settings},
+        one::Around,
     },
     statistics::SumPrecision,
 };
@@ -41,6 +43,11 @@ pub trait NetworkInputs: Any + fmt::Debug + Sync {
         false
     }
 
+    /// Whether they depend on the pixels around, as [`Observed::around`] has it.
+    fn reads_around(&self) -> bool {
+        false
+    }
+
     /// Whether fragments whose weight is known without the network have sums of their own, which are not normalised with the others'.
     fn known_apart(&self) -> bool {
         false
@@ -60,6 +67,17 @@ pub trait NetworkInputs: Any + fmt::Debug + Sync {
             }
         }
         sum
+    }
+
+    /// The colour of a pixel of which nothing is known of those around, where it is no weighted mean of its fragments' colours.
+    fn color(
+        &self,
+        _fragments: &[Fragment],
+        _background: [f32; 3],
+        _warp: &DepthWarp,
+        _network: Forward<'_>,
+    ) -> Option<[f32; 3]> {
+        None
     }
 
     /// What targets hold after all fragments, by their names in the surroundings, where a self-test says it.
@@ -87,6 +105,8 @@ pub struct Observed<'a> {
     pub warp: DepthWarp,
     /// How sums are kept.
     pub precision: SumPrecision,
+    /// What is known of the pixels around it.
+    pub around: Around,
 }
 
 /// A pixel of a dataset, nearest fragment first.
@@ -128,6 +148,34 @@ pub enum Examples {
     Rows(Vec<RowExample>),
     /// The pixel is one example: all of its fragments, nearest first.
     Pixel(Vec<KnownFragment<Vec<f64>>>),
+    /// The pixel is one example: sums of its fragments.
+    Sums(PixelSums),
+}
+
+/// Sums of a pixel that a network is asked about.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PixelSums {
+    /// The sums.
+    pub sums: Vec<GuessedSum>,
+    /// Coverage that is theirs.
+    pub left: f64,
+    /// The exact colour without what is known.
+    pub color: [f64; 3],
+}
+
+/// A sum of which `weight e^(−absorbance · answer)` is seen, before normalisation.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GuessedSum {
+    /// Raw inputs.
+    pub inputs: Vec<f64>,
+    /// What an answer of 1 puts in front of it.
+    pub absorbance: f64,
+    /// Its own absorbance.
+    pub weight: f64,
+    /// Mean colour.
+    pub color: [f64; 3],
+    /// How much of it is seen.
+    pub exact: f64,
 }
 
 /// An example that is a row.

@@ -116,6 +116,8 @@ macro_rules! zeta {
     };
 }
 
+pub(super) use zeta;
+
 pub(super) const ZETA: &str = zeta!();
 
 pub(super) const ZETA_WITHOUT_GAPS: &str = concat!(

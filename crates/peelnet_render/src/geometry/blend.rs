@@ -15,6 +15,8 @@ pub enum Blend {
     Under,
     /// `max(dst, src)` of red, green and blue, from the smallest half; `dst + src` of alpha, from 0.
     MaxAdd,
+    /// `dst + src` of red, green and blue, from 0; `max(dst, src)` of alpha, from the smallest half.
+    AddMax,
     /// `max(dst, src)`, from the smallest half.
     Max,
     /// `max(dst, src)` of 8-bit channels, 0 … 1, from 0.
@@ -47,6 +49,7 @@ impl Blend {
             Self::Over => (clear, [over, transmit_alpha]),
             Self::Under => (clear, [under, transmit_alpha]),
             Self::MaxAdd => ([least, least, least, 0.0], [max, add]),
+            Self::AddMax => ([0.0, 0.0, 0.0, least], [add, max]),
             Self::Max => ([least; 4], [max, max]),
         }
     }

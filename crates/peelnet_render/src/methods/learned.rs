@@ -1,6 +1,6 @@
 use super::prelude::*;
 use crate::target::LearnedWeight;
-use peelnet_core::{absorbance::DepthWarp, statistics::SumPrecision};
+use peelnet_core::{absorbance::DepthWarp, methods::one::Around, statistics::SumPrecision};
 use peelnet_model::{Model, Recipe, inputs::Observed};
 
 impl LearnedWeight {
@@ -45,6 +45,7 @@ pub(super) fn learned_transmittances(
             Precision::Half => SumPrecision::Half,
             Precision::Full => SumPrecision::Exact,
         },
+        around: Around::NONE,
     });
     (!all.is_empty() || fragments.is_empty()).then_some(all)
 }

@@ -22,6 +22,7 @@ mod mboit;
 pub(crate) mod method;
 pub mod mlab;
 mod nmt;
+pub mod one;
 mod painter;
 pub(crate) mod parameter;
 pub mod slabs;
@@ -96,6 +97,8 @@ pub const METHODS: &[Method] = &[
     kbuffer::HYBRID,
     mlab::METHOD,
     slabs::METHOD,
+    one::METHOD,
+    one::WIDE,
     stochastic::METHOD,
     deep_thesis::METHOD,
     nmt::METHOD,
@@ -103,6 +106,8 @@ pub const METHODS: &[Method] = &[
     slabs::SMALL,
     slabs::MEDIUM,
     slabs::LARGE,
+    one::DEEP,
+    one::DEEP_WIDE,
     anchored::SMALL,
     anchored::MEDIUM,
 ];

@@ -30,6 +30,8 @@ pub(crate) struct Target {
     /// Whether it has 32 bits a channel unless `targets` says otherwise.
     pub full: bool,
     pub blend: Blend,
+    /// Pixels of the frame from one of its pixels to the next, both ways: of the frame's it holds the middle ones.
+    pub every: u32,
 }
 
 /// `Σ C w` and `Σ α w`.
@@ -52,6 +54,7 @@ impl Target {
             channels,
             full: false,
             blend,
+            every: 1,
         }
     }
 
@@ -61,6 +64,11 @@ impl Target {
             full: true,
             ..Self::half(name, channels, blend)
         }
+    }
+
+    /// Of one pixel in so many, both ways.
+    pub const fn every(self, every: u32) -> Self {
+        Self { every, ..self }
     }
 
     pub const fn format(&self) -> wgpu::TextureFormat {
@@ -398,10 +406,12 @@ impl<'a> Passes<'a> {
             });
         }
         let (mut colors, mut states, mut samples) = (Vec::new(), Vec::new(), 1);
+        let mut every = 1;
         for written in &pass.writes {
             let resource = &self.resources[written.0];
             match (resource, &resources[written.0]) {
                 (Resource::Target(target), Allocated::Texture(view)) => {
+                    every = target.every;
                     colors.push(Some((view.clone(), target.blend.start())));
                     states.push(Some(target.state()));
                 }
@@ -447,6 +457,7 @@ impl<'a> Passes<'a> {
         Ok(PlannedPass {
             label: pass.label.clone(),
             colors,
+            every,
             work,
         })
     }
@@ -488,8 +499,14 @@ impl Resource {
                     gpu.need(feature, &b.spec.to_string(), hint)?;
                 }
                 let (format, none) = (target.format(), wgpu::TextureUsages::empty());
-                sizes.pixel += format.block_copy_size(None).unwrap_or_default();
-                Allocated::Texture(gpu.texture(target.name, format, b.frame.size, 1, none)?)
+                let bytes = format.block_copy_size(None).unwrap_or_default();
+                let size = b.frame.size.map(|n| n.div_ceil(target.every));
+                if target.every == 1 {
+                    sizes.pixel += bytes;
+                } else {
+                    sizes.frame += u64::from(size[0]) * u64::from(size[1]) * u64::from(bytes);
+                }
+                Allocated::Texture(gpu.texture(target.name, format, size, 1, none)?)
             }
             Self::Storage {
                 name,

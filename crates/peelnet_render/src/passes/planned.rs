@@ -25,6 +25,8 @@ pub(super) struct PlannedPass {
     pub label: String,
     /// What it writes with what that is cleared to; `None` for the output.
     pub colors: Vec<Option<(wgpu::TextureView, [f64; 4])>>,
+    /// [`Target::every`](super::Target::every) of those.
+    pub every: u32,
     pub work: Work,
 }
 
@@ -54,6 +56,10 @@ impl Planned {
             boxes.update(cx.recorder, cx.scene);
         }
         let mut pass = cx.recorder.render(&p.label, &colors, None);
+        if p.every > 1 {
+            let [width, height] = cx.frame.size.map(|n| n as f32 / p.every as f32);
+            pass.set_viewport(0.0, 0.0, width, height, 0.0, 1.0);
+        }
         match (&p.work, &self.sorted) {
             (Work::Boxes(boxes), _) => boxes.draw(&mut pass, cx.frame),
             (Work::Surfaces(pipelines), Some(sorted)) => {

@@ -250,6 +250,8 @@ mod tests {
                 let layout = layouts.into_iter().find(|l| features.contains(l));
                 layout.unwrap_or("large")
             }
+            "methods::one" if features.contains(&"wide") => "one-wide",
+            "methods::one" => "one",
             _ if features.contains(&"separate_ends") => "anchored-medium",
             _ => "anchored-small",
         };

@@ -1,0 +1,507 @@
+//! `one`: a pixel in one geometry pass. Of its nearest fragment the colour is kept, of all others sums by where they lie among what is seen
+//! around the pixel.
+//!
+//! Quantiles of depth ([`Quantiles`]) say where that is. They come from a pass over one pixel of 64 that knows depth and opacity alone
+//! ([`Tiles`]), and change smoothly from pixel to pixel. A fragment is shared between the sums by bumps over its place among the quantiles
+//! ([`Design::shares`]): `Σ b φ_k c` and `Σ b φ_k` of absorbance `b`. The shares of a fragment sum to 1, so that the pixel's coverage is exact.
+//!
+//! The resolve takes the nearest fragment out of the sums and composites it first. How much of each sum is seen behind it is a formula of the
+//! sums, `e^−A` ([`Ahead::absorbance`]), or twice a network's answer times `A`.
+//!
+//! Four or eight half-float targets: red, green and blue add, alpha keeps the most. In the first four alphas lies the nearest fragment: a level
+//! of depth, counted from the far end, in the high part, and a value in the low part, so that all four are of the same fragment.
+//! The shaders are `learned/one.wgsl` and the file of a design.
+
+use crate::{
+    absorbance::{DepthWarp, absorbance},
+    fragment::Fragment,
+    statistics::{NEAREST_CODE, SumPrecision},
+};
+
+/// Pixels from one that is looked at to the next, both ways.
+pub const TILE: u32 = 8;
+
+/// Bins of the frame's depth that tell where in a pixel absorbance lies.
+pub const TILE_BINS: usize = 16;
+
+/// What is seen before each of the depths that are kept, as a share of all that is seen behind the nearest fragments.
+pub const SHARES: [f64; 4] = [0.06, 0.35, 0.65, 0.94];
+
+/// What is seen where nothing is known, of one pixel: evenly spread.
+const PRIOR: f64 = 0.02;
+
+/// The shortest stretch between two quantiles, of the frame's depth.
+const SHORTEST: f64 = 1e-4;
+
+/// Levels of depth, and of a value in each, of the nearest fragment.
+pub const DEPTHS: u32 = 480;
+pub const VALUES: u32 = 128;
+
+/// `b / (1 + b)` of the most absorbance, as of colours without bound.
+const MOST: f64 = 16.0 / 17.0;
+
+/// Depths, 0 … 1 of the frame's, in front of which [`SHARES`] lie of what is seen behind the nearest fragments around a pixel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Quantiles(pub [f64; 4]);
+
+impl Quantiles {
+    /// Of a frame of which only its nearest and farthest depth are known.
+    pub const EVEN: Self = Self(SHARES);
+
+    /// Where a depth lies among them, 0 … 1.
+    pub fn place(&self, depth: f64) -> f64 {
+        let knots = |inner: [f64; 4]| [0.0, inner[0], inner[1], inner[2], inner[3], 1.0];
+        let (depths, shares) = (knots(self.0), knots(SHARES));
+        let stretches = depths.windows(2).zip(shares.windows(2));
+        let passed = stretches.map(|(d, s)| {
+            let part = (depth - d[0]) / (d[1] - d[0]).max(SHORTEST);
+            (s[1] - s[0]) * part.clamp(0.0, 1.0)
+        });
+        passed.sum()
+    }
+
+    /// On the scale halfway between depth and place, on which the nearest fragment's depth is kept.
+    fn halfway(&self) -> Self {
+        Self(std::array::from_fn(|k| 0.5 * (self.0[k] + SHARES[k])))
+    }
+
+    fn of_seen(seen: [f64; TILE_BINS]) -> Self {
+        let all: f64 = seen.iter().sum();
+        let at = |share: f64| {
+            let mut passed = 0.0;
+            for (k, bin) in seen.iter().enumerate() {
+                if passed + bin >= share * all {
+                    let part = (share * all - passed) / bin.max(1e-9);
+                    return (k as f64 + part.clamp(0.0, 1.0)) / TILE_BINS as f64;
+                }
+                passed += bin;
+            }
+            1.0
+        };
+        // As they are stored, in 8 bits.
+        Self(SHARES.map(|share| (at(share) * 255.0 + 0.5).floor() / 255.0))
+    }
+}
+
+/// Absorbance in levels of 8 bits.
+const BIN_LEVELS: f64 = super::slabs::BIN_LEVELS;
+
+/// How a level is shared between bins: linearly between the two whose middles a depth lies between, in whole levels.
+fn in_bins(level: f64, depth: f64) -> [f64; TILE_BINS] {
+    let last = TILE_BINS as f64 - 1.0;
+    let place = (depth * TILE_BINS as f64 - 0.5).clamp(0.0, last);
+    std::array::from_fn(|k| {
+        let share = (1.0 - (place - k as f64).abs()).max(0.0);
+        (level * share + 0.5).floor()
+    })
+}
+
+/// What is seen of a pixel behind its nearest fragment, by bins of depth. Fragments are absorbances and depths, 0 … 1.
+pub fn seen_behind_nearest(fragments: &[(f64, f64)]) -> [f64; TILE_BINS] {
+    let (mut bins, mut nearest) = ([0.0f64; TILE_BINS], 0);
+    let level = |b: f64| (BIN_LEVELS * b + 0.5).floor().max(1.0);
+    for &(b, depth) in fragments {
+        for (sum, own) in bins.iter_mut().zip(in_bins(level(b), depth)) {
+            *sum = (*sum + own).min(255.0);
+        }
+        nearest = nearest.max(NEAREST_CODE.mirrored(2.0 * depth - 1.0, b));
+    }
+    if fragments.is_empty() {
+        return bins;
+    }
+    let zeta = -NEAREST_CODE.zeta(nearest);
+    let taken = in_bins(level(NEAREST_CODE.absorbance(nearest)), 0.5 * zeta + 0.5);
+    let mut front = 0.0f64;
+    std::array::from_fn(|k| {
+        let (all, rest) = (bins[k] / BIN_LEVELS, (bins[k] - taken[k]).max(0.0));
+        let seen = (-front).exp() - (-front - all).exp();
+        front += all;
+        seen * rest / bins[k].max(1.0)
+    })
+}
+
+/// The quantiles of a frame, by tiles of [`TILE`] × [`TILE`] pixels.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tiles {
+    columns: u32,
+    quantiles: Vec<Quantiles>,
+}
+
+impl Tiles {
+    /// Of what is seen in a pixel of every tile ([`seen_behind_nearest`]), row by row: each tile's are those of the nine around it.
+    ///
+    /// # Panics
+    /// Without a tile.
+    pub fn new(columns: u32, seen: &[[f64; TILE_BINS]]) -> Self {
+        let rows = seen.len() as u32 / columns;
+        let around = |x: u32, y: u32| {
+            let mut sum = [PRIOR / TILE_BINS as f64; TILE_BINS];
+            for (dx, dy) in (0..9).map(|k| (k % 3, k / 3)) {
+                let [x, y] = [(x + dx, columns), (y + dy, rows)]
+                    .map(|(k, n)| k.saturating_sub(1).min(n - 1));
+                let one = seen[(y * columns + x) as usize];
+                sum.iter_mut().zip(one).for_each(|(sum, bin)| *sum += bin);
+            }
+            Quantiles::of_seen(sum)
+        };
+        let places = (0..seen.len() as u32).map(|k| (k % columns, k / columns));
+        Self {
+            columns,
+            quantiles: places.map(|(x, y)| around(x, y)).collect(),
+        }
+    }
+
+    /// Of a pixel, linear between the middles of tiles.
+    pub fn at(&self, [x, y]: [u32; 2]) -> Quantiles {
+        let last = [self.columns, self.quantiles.len() as u32 / self.columns].map(|n| n - 1);
+        let place = [x, y].map(|k| (f64::from(k) + 0.5) / f64::from(TILE) - 0.5);
+        let mut all = [0.0; 4];
+        for corner in 0..4u32 {
+            let mut weight = 1.0;
+            let tile = [0, 1].map(|axis| {
+                let (low, far) = (place[axis].floor(), f64::from(corner >> axis & 1));
+                weight *= 1.0 - (place[axis] - low - far).abs();
+                (low + far).clamp(0.0, f64::from(last[axis])) as u32
+            });
+            let Quantiles(of) = self.quantiles[(tile[1] * self.columns + tile[0]) as usize];
+            all.iter_mut()
+                .zip(of)
+                .for_each(|(sum, q)| *sum += weight * q);
+        }
+        Quantiles(all)
+    }
+}
+
+/// What a pixel is told besides its fragments.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Around {
+    pub quantiles: Quantiles,
+    /// 0 … 1, for the whole frame alike: moves the steps of the nearest fragment's values, so that they are not seen as bands.
+    pub noise: f64,
+}
+
+impl Around {
+    /// Of a pixel at a place of the frame: neighbours' noises lie far apart (Roberts 2018, the sequence R2).
+    pub fn new(quantiles: Quantiles, [x, y]: [u32; 2]) -> Self {
+        let steps = x
+            .wrapping_mul(12_664_746)
+            .wrapping_add(y.wrapping_mul(9_560_334));
+        Self {
+            quantiles,
+            noise: f64::from(steps & 0xff_ffff) / f64::from(1 << 24),
+        }
+    }
+
+    pub const NONE: Self = Self {
+        quantiles: Quantiles::EVEN,
+        noise: 0.5,
+    };
+}
+
+/// The sums of a pixel: the middles of their bumps among the quantiles, and the bumps' widths. At most [`MAX_SUMS`], a multiple of three.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Design {
+    pub middles: &'static [f64],
+    pub widths: &'static [f64],
+}
+
+pub const MAX_SUMS: usize = 6;
+
+impl Design {
+    /// Four targets, 32 bytes a pixel. The bumps were learned with the resolve, from the training scenes.
+    pub const ONE: Self = Self {
+        middles: &[0.224, 0.485, 1.028],
+        widths: &[0.158, 0.168, 0.191],
+    };
+    /// Eight targets, 64 bytes.
+    pub const WIDE: Self = Self {
+        middles: &[0.199, 0.315, 0.495, 0.635, 0.784, 0.948],
+        widths: &[0.069, 0.074, 0.072, 0.058, 0.068, 0.093],
+    };
+
+    /// How a fragment at a place among the quantiles is shared between the sums.
+    pub fn shares(&self, place: f64) -> [f64; MAX_SUMS] {
+        let mut all = [0.0; MAX_SUMS];
+        let bumps = self.middles.iter().zip(self.widths);
+        for (share, (middle, width)) in all.iter_mut().zip(bumps) {
+            *share = (-0.5 * ((place - middle) / width).powi(2)).exp();
+        }
+        let sum: f64 = all.iter().sum();
+        all.map(|share| share / sum)
+    }
+}
+
+/// A value without bound in 0 … 1, in even steps of a root: faint ones get more of them.
+fn to_unit(value: f64) -> f64 {
+    (value.max(0.0) / (1.0 + value.max(0.0)) / MOST)
+        .min(1.0)
+        .sqrt()
+}
+
+fn from_unit(unit: f64) -> f64 {
+    let share = unit * unit * MOST;
+    share / (1.0 - share)
+}
+
+/// How far a step of the nearest fragment's absorbance may be from the truth.
+fn slack(absorbance: f64) -> f64 {
+    2.0 * to_unit(absorbance) * MOST * (1.0 + absorbance).powi(2) / f64::from(VALUES - 1)
+}
+
+/// The nearest fragment, as its targets hold it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Nearest {
+    pub absorbance: f64,
+    pub color: [f64; 3],
+    /// Among the quantiles.
+    pub place: f64,
+}
+
+/// What targets hold of a pixel.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Kept {
+    design: Design,
+    around: Around,
+    /// `Σ b φ_k c` and `Σ b φ_k`.
+    sums: [[f64; 4]; MAX_SUMS],
+    /// Levels of the nearest fragment's red, green, blue and absorbance; 0 where there is none.
+    levels: [u32; 4],
+}
+
+/// One of a pixel's sums without its nearest fragment, and what is known of how much lies in front of it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Ahead {
+    /// By the formula: all of the sums before it, and of its own what an even mixture has in front, `ln(B / (1 − e^−B))`.
+    pub absorbance: f64,
+    /// Absorbance of all sums.
+    pub total: f64,
+    /// Shares of the total: of the sums before, the sum, and those before and behind it.
+    pub before: f64,
+    pub own: f64,
+    pub previous: f64,
+    pub next: f64,
+    /// Opacity of the nearest fragment, and its place.
+    pub alpha: f64,
+    pub place: f64,
+    /// 0 for the first, 1 for the last sum.
+    pub number: f64,
+}
+
+impl Ahead {
+    /// How much of the sum is seen, from 0 … 1: a half is the formula.
+    pub fn seen(&self, answer: f64) -> f64 {
+        (-2.0 * self.absorbance * answer).exp()
+    }
+}
+
+/// A pixel without its nearest fragment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rest {
+    pub nearest: Nearest,
+    /// Opacity of the nearest, no more than the pixel's coverage.
+    pub alpha: f64,
+    /// Coverage that is left for the sums.
+    pub left: f64,
+    pub coverage: f64,
+    /// As [`Kept::sums`], and what is known of each.
+    pub sums: [[f64; 4]; MAX_SUMS],
+    pub ahead: [Ahead; MAX_SUMS],
+}
+
+impl Kept {
+    /// Of fragments in any order: absorbance, depth 0 … 1 and colour.
+    pub fn gather(
+        fragments: impl IntoIterator<Item = (f64, f64, [f32; 3])>,
+        design: Design,
+        around: Around,
+        precision: SumPrecision,
+    ) -> Self {
+        let mut kept = Self {
+            design,
+            around,
+            sums: Default::default(),
+            levels: [0; 4],
+        };
+        for (b, depth, color) in fragments {
+            let shares = design.shares(around.quantiles.place(depth));
+            let [red, green, blue] = color.map(f64::from);
+            for (sum, share) in kept.sums.iter_mut().zip(shares) {
+                for (sum, c) in sum.iter_mut().zip([red, green, blue, 1.0]) {
+                    *sum = precision.add(*sum, b * share * c);
+                }
+            }
+            let level = kept.depth_level(depth);
+            for (most, value) in kept.levels.iter_mut().zip([red, green, blue, b]) {
+                let top = f64::from(VALUES - 1);
+                let step = (to_unit(value) * top + around.noise).floor().min(top);
+                *most = (*most).max(level * VALUES + step as u32);
+            }
+        }
+        kept
+    }
+
+    /// Counted from the far end.
+    fn depth_level(&self, depth: f64) -> u32 {
+        let on_scale = 0.5 * (depth + self.around.quantiles.place(depth));
+        let level = (on_scale * f64::from(DEPTHS)).floor();
+        DEPTHS - 1 - level.clamp(0.0, f64::from(DEPTHS - 1)) as u32
+    }
+
+    fn nearest(&self) -> Nearest {
+        let top = f64::from(VALUES - 1);
+        let value = |level: u32| {
+            let step = f64::from(level % VALUES) + 0.5 - self.around.noise;
+            from_unit((step / top).clamp(0.0, 1.0))
+        };
+        let bin = DEPTHS - 1 - self.levels[3] / VALUES;
+        let on_scale = (f64::from(bin) + 0.5) / f64::from(DEPTHS);
+        let [red, green, blue, absorbance] = self.levels.map(value);
+        Nearest {
+            absorbance,
+            color: [red, green, blue],
+            place: self.around.quantiles.halfway().place(on_scale),
+        }
+    }
+
+    /// The nearest fragment, and the sums without it.
+    pub fn rest(&self) -> Rest {
+        let mut nearest = self.nearest();
+        let all: f64 = self.sums.iter().map(|sum| sum[3]).sum();
+        // All there is, as far as roundings can tell: its colour is the mean.
+        if all - nearest.absorbance <= slack(nearest.absorbance) + all / 1024.0 {
+            let mean = |c: usize| self.sums.iter().map(|sum| sum[c]).sum::<f64>() / all.max(1e-6);
+            nearest.absorbance = all;
+            nearest.color = [0, 1, 2].map(mean);
+        }
+        let coverage = -(-all).exp_m1();
+        let shares = self.design.shares(nearest.place);
+        let mut sums = self.sums;
+        for (sum, share) in sums.iter_mut().zip(shares) {
+            let taken = nearest.absorbance * share;
+            let [red, green, blue] = nearest.color;
+            for (sum, c) in sum.iter_mut().zip([red, green, blue, 1.0]) {
+                *sum = (*sum - taken * c).max(0.0);
+            }
+        }
+        let total: f64 = sums.iter().map(|sum| sum[3]).sum();
+        let alpha = (-(-nearest.absorbance).exp_m1()).min(coverage);
+        let count = self.design.middles.len();
+        let (mut ahead, mut before) = ([Ahead::default(); MAX_SUMS], 0.0);
+        let of_total = |b: f64| b / total.max(1e-6);
+        for k in 0..count {
+            let own = sums[k][3];
+            let neighbour = |k: Option<&[f64; 4]>| of_total(k.map_or(0.0, |sum| sum[3]));
+            ahead[k] = Ahead {
+                absorbance: before + inside(own),
+                total,
+                before: of_total(before),
+                own: of_total(own),
+                previous: neighbour(k.checked_sub(1).map(|k| &sums[k])),
+                next: neighbour(sums[..count].get(k + 1)),
+                alpha,
+                place: nearest.place,
+                number: k as f64 / (count - 1) as f64,
+            };
+            before += own;
+        }
+        Rest {
+            nearest,
+            alpha,
+            left: coverage - alpha,
+            coverage,
+            sums,
+            ahead,
+        }
+    }
+}
+
+/// What an even mixture of some absorbance has in front of itself: `ln(b / (1 − e^−b))`.
+fn inside(b: f64) -> f64 {
+    if b < 0.02 {
+        return b * (0.5 - b / 24.0);
+    }
+    (b / -(-b).exp_m1()).ln()
+}
+
+impl Rest {
+    /// The colour of a pixel over black; `answer` says how much of each sum is seen ([`Ahead::seen`]).
+    pub fn color(&self, answer: impl Fn(&Ahead) -> f64) -> [f64; 3] {
+        let mut seen = [0.0; 4];
+        for (sum, ahead) in self.sums.iter().zip(&self.ahead) {
+            if sum[3] > 0.0 {
+                let part = ahead.seen(answer(ahead));
+                seen.iter_mut().zip(sum).for_each(|(s, x)| *s += part * x);
+            }
+        }
+        std::array::from_fn(|c| {
+            let rest = if seen[3] > 0.0 {
+                seen[c] / seen[3]
+            } else {
+                self.nearest.color[c]
+            };
+            self.alpha * self.nearest.color[c] + self.left * rest
+        })
+    }
+}
+
+/// The transmittance in front of each fragment that a pixel's colour stands for, given absorbances and depths as to [`Kept::gather`]: of the
+/// nearest 1, of others what all sums together show of it.
+pub fn transmittances(
+    fragments: &[(f64, f64)],
+    design: Design,
+    around: Around,
+    precision: SumPrecision,
+    answer: impl Fn(&Ahead) -> f64,
+) -> Vec<f64> {
+    let grey = fragments.iter().map(|&(b, depth)| (b, depth, [0.0; 3]));
+    let rest = Kept::gather(grey, design, around, precision).rest();
+    let parts: Vec<f64> = rest
+        .ahead
+        .iter()
+        .map(|ahead| ahead.seen(answer(ahead)))
+        .collect();
+    let sums = rest.sums.iter().zip(&parts);
+    let all: f64 = sums.map(|(sum, part)| sum[3] * part).sum();
+    let nearest = fragments.iter().map(|f| f.1).fold(f64::MAX, f64::min);
+    let of = |&(b, depth): &(f64, f64)| {
+        if depth == nearest || all <= 0.0 {
+            return 1.0;
+        }
+        let shares = design.shares(around.quantiles.place(depth));
+        let seen: f64 = shares
+            .iter()
+            .zip(&parts)
+            .map(|(share, part)| share * part)
+            .sum();
+        // `b / α` of it is 1 where it is faint.
+        (rest.left * seen / all * b / -(-b).exp_m1().min(-f64::MIN_POSITIVE)).clamp(0.0, 1.0)
+    };
+    fragments.iter().map(of).collect()
+}
+
+/// The answer without a network.
+pub const fn formula(_: &Ahead) -> f64 {
+    0.5
+}
+
+/// Composites a pixel.
+pub fn composite(
+    fragments: &[Fragment],
+    background: [f32; 3],
+    warp: &DepthWarp,
+    design: Design,
+    around: Around,
+    answer: impl Fn(&Ahead) -> f64,
+) -> [f32; 3] {
+    let each = fragments
+        .iter()
+        .map(|f| (absorbance(f.alpha), depth_of(warp, f.depth), f.color));
+    let rest = Kept::gather(each, design, around, SumPrecision::Exact).rest();
+    let color = rest.color(answer);
+    std::array::from_fn(|c| (color[c] + (1.0 - rest.coverage) * f64::from(background[c])) as f32)
+}
+
+/// A linear depth on the frame's scale without gaps, 0 … 1.
+pub fn depth_of(warp: &DepthWarp, depth: f32) -> f64 {
+    0.5 * warp.cut(depth.into()) + 0.5
+}

@@ -1,0 +1,232 @@
+//! `deep-one`, `deep-one-wide`: how much is seen of each sum of a pixel that was drawn in one pass. Whole pixels are examples.
+
+use super::{feature::*, network_inputs::*, surroundings::*};
+use peelnet_core::{
+    absorbance::{DepthWarp, absorbance},
+    fragment::Fragment,
+    methods::one::{self, Ahead, Around, Design, Kept, Rest, depth_of, formula},
+};
+
+const OF_TOTAL: &str = "of the absorbance of all sums";
+
+/// How much absorbance the formula puts in front of a sum and how much there is, how it is spread over the sums around it, and what is known of
+/// the nearest fragment.
+pub static NINE_OF_SUMS: [&Feature<Ahead>; 9] = [
+    &Feature::new(
+        "root_absorbance",
+        "root of twice the absorbance in front, by the formula",
+        "sqrt(2.0 * ahead.absorbance)",
+        |ahead| (2.0 * ahead.absorbance).sqrt(),
+    ),
+    &Feature::new(
+        "root_total",
+        "root of the absorbance of all sums",
+        "sqrt(ahead.total)",
+        |ahead| ahead.total.sqrt(),
+    ),
+    &Feature::new("share_before", OF_TOTAL, "ahead.before", |a| a.before),
+    &Feature::new("share_own", OF_TOTAL, "ahead.own", |a| a.own),
+    &Feature::new("share_previous", OF_TOTAL, "ahead.previous", |a| a.previous),
+    &Feature::new("share_next", OF_TOTAL, "ahead.next", |a| a.next),
+    &Feature::new("nearest_alpha", "1", "ahead.alpha", |a| a.alpha),
+    &Feature::new("nearest_place", "among the quantiles", "ahead.place", |a| {
+        a.place
+    }),
+    &Feature::new(
+        "number",
+        "0 for the first, 1 for the last sum",
+        "ahead.number",
+        |a| a.number,
+    ),
+];
+
+/// The sums of a pixel.
+#[derive(Debug)]
+pub struct OneInputs {
+    /// The sums.
+    pub design: Design,
+}
+
+impl OneInputs {
+    /// What targets hold of a pixel of known colours.
+    fn kept(&self, pixel: &Observed<'_>, colors: &[[f32; 3]]) -> Kept {
+        let fragments = pixel.fragments.iter().zip(colors);
+        let fragments = fragments.map(|(&(depth, alpha), &color)| {
+            (absorbance(alpha), depth_of(&pixel.warp, depth), color)
+        });
+        Kept::gather(fragments, self.design, pixel.around, pixel.precision)
+    }
+
+    fn rest(&self, pixel: &PeeledPixel<'_>) -> Rest {
+        self.kept(&pixel.observed, pixel.colors).rest()
+    }
+}
+
+impl NetworkInputs for OneInputs {
+    fn features(&self) -> Vec<&'static About> {
+        about(&NINE_OF_SUMS)
+    }
+
+    fn surroundings(&self) -> &'static Surroundings {
+        one_surroundings(self.design)
+    }
+
+    fn transmittances(&self, pixel: &Observed<'_>, network: Forward<'_>) -> Vec<f64> {
+        let place =
+            |&(depth, alpha): &(f32, f32)| (absorbance(alpha), depth_of(&pixel.warp, depth));
+        let fragments: Vec<_> = pixel.fragments.iter().map(place).collect();
+        let answer = |ahead: &Ahead| network(&values(&NINE_OF_SUMS, ahead));
+        one::transmittances(
+            &fragments,
+            self.design,
+            pixel.around,
+            pixel.precision,
+            answer,
+        )
+    }
+
+    fn examples(&self, pixel: &PeeledPixel<'_>) -> Examples {
+        let rest = self.rest(pixel);
+        if rest.left <= 0.0 {
+            return Examples::Rows(Vec::new());
+        }
+        // What is seen of each sum, of all fragments but the nearest.
+        let mut exact = [0.0; one::MAX_SUMS];
+        let mut color = [0.0; 3];
+        let observed = &pixel.observed;
+        for (i, seen) in pixel.contributions().enumerate() {
+            for (sum, &c) in color.iter_mut().zip(&pixel.colors[i]) {
+                *sum += seen * f64::from(c);
+            }
+            if i > 0 {
+                let depth = depth_of(&observed.warp, observed.fragments[i].0);
+                let shares = self.design.shares(observed.around.quantiles.place(depth));
+                exact
+                    .iter_mut()
+                    .zip(shares)
+                    .for_each(|(sum, share)| *sum += seen * share);
+            }
+        }
+        let known = rest.nearest.color.map(|c| rest.alpha * c);
+        let sums = rest.sums.iter().zip(&rest.ahead).zip(exact);
+        let sums = sums.filter(|((sum, _), _)| sum[3] > 0.0);
+        let sums = sums.map(|((sum, ahead), exact)| GuessedSum {
+            inputs: values(&NINE_OF_SUMS, ahead),
+            absorbance: 2.0 * ahead.absorbance,
+            weight: sum[3],
+            color: [0, 1, 2].map(|c| sum[c] / sum[3]),
+            exact,
+        });
+        Examples::Sums(PixelSums {
+            sums: sums.collect(),
+            left: rest.left,
+            color: std::array::from_fn(|c| color[c] - known[c]),
+        })
+    }
+
+    fn reads_around(&self) -> bool {
+        true
+    }
+
+    fn color(
+        &self,
+        fragments: &[Fragment],
+        background: [f32; 3],
+        warp: &DepthWarp,
+        network: Forward<'_>,
+    ) -> Option<[f32; 3]> {
+        let (design, answer) = (self.design, |a: &Ahead| network(&values(&NINE_OF_SUMS, a)));
+        let around = Around::NONE;
+        Some(one::composite(
+            fragments, background, warp, design, around, answer,
+        ))
+    }
+
+    /// By the formula.
+    fn baseline(&self, pixel: &PeeledPixel<'_>) -> [f64; 3] {
+        self.rest(pixel).color(formula)
+    }
+}
+
+/// What surrounds a network, or the formula, of a design.
+pub fn one_surroundings(design: Design) -> &'static Surroundings {
+    if design == Design::WIDE { &WIDE } else { &ONE }
+}
+
+const BEFORE: &str = concat!(
+    zeta!(),
+    " Where boxes show that nothing lies between two depths, use peelnet_cut(zeta, gaps) for zeta: it leaves up to two such gaps out. \
+    quantiles says where among the depths around the pixel most is seen: peelnet_even() where nothing is known but near and far, with several \
+    times the error. To know it, draw depth and opacity alone at an eighth of the width and the height, the middles of its pixels 8 x + 4 and \
+    8 y + 4 of the frame: peelnet_tile_bins into four rgba8unorm targets that add and peelnet_tile_nearest into one r16float target that keeps \
+    the most, cleared to 0 and to -65504; then sum peelnet_tile_seen of the nine pixels around each, group by group of four bins, and keep \
+    peelnet_quantiles of the sums. Read it with linear interpolation. noise is any number in 0 .. 1 that is the same for all of a pixel: \
+    it hides the steps of what is kept of the nearest fragment; 0.5 where that does not matter."
+);
+
+const fn surroundings(
+    modules: &'static [&'static str],
+    passes: &'static [Pass],
+    resolve: &'static str,
+) -> Surroundings {
+    Surroundings {
+        parameters: "ahead: PeelnetAhead",
+        modules,
+        before: BEFORE,
+        passes,
+        resolve,
+    }
+}
+
+const fn kept(name: &'static str, write: &'static str) -> Target {
+    let blend = ([0.0, 0.0, 0.0, LEAST], Blend::Add, Blend::Max);
+    target(name, HALF, blend, write)
+}
+
+static ONE: Surroundings = surroundings(
+    &[
+        "learned::zeta",
+        "learned::absorbance",
+        "learned::levels",
+        "learned::one",
+        "learned::one_narrow",
+    ],
+    &[pass(
+        "gather",
+        &[],
+        statistics("peelnet_statistics(alpha, rgb, zeta, quantiles, noise)"),
+        &[
+            kept("sum_a", "s.sum_a"),
+            kept("sum_b", "s.sum_b"),
+            kept("sum_c", "s.sum_c"),
+            kept("absorbances", "s.absorbances"),
+        ],
+    )],
+    "peelnet_resolve(sum_a, sum_b, sum_c, absorbances, quantiles, noise, background)",
+);
+
+static WIDE: Surroundings = surroundings(
+    &[
+        "learned::zeta",
+        "learned::absorbance",
+        "learned::levels",
+        "learned::one",
+        "learned::one_wide",
+    ],
+    &[pass(
+        "gather",
+        &[],
+        statistics("peelnet_statistics(alpha, rgb, zeta, quantiles, noise)"),
+        &[
+            kept("sum_a", "s.sum_a"),
+            kept("sum_b", "s.sum_b"),
+            kept("sum_c", "s.sum_c"),
+            kept("sum_d", "s.sum_d"),
+            kept("sum_e", "s.sum_e"),
+            kept("sum_f", "s.sum_f"),
+            kept("absorbances", "s.absorbances"),
+            kept("absorbances_back", "s.absorbances_back"),
+        ],
+    )],
+    "peelnet_resolve(sum_a, sum_b, sum_c, sum_d, sum_e, sum_f, absorbances, absorbances_back, quantiles, noise, background)",
+);

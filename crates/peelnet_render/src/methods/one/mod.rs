@@ -1,0 +1,118 @@
+//! `deep-one`, `deep-one-wide`: one geometry pass at full resolution, of which the nearest fragment's colour and three or six sums are kept, and a
+//! network that says how much of each sum is seen, drawn with the exported text itself. `one` and `one-wide` are the same by a formula.
+
+mod expectations;
+pub mod reference;
+
+use crate::methods::prelude::*;
+use peelnet_core::methods::one::{Design, TILE};
+use peelnet_model::inputs::one_surroundings;
+
+const RANGE: Parameter = Parameter::words(
+    "range",
+    "where the depths come from that sums are parted at: one pixel in 64, drawn first without shading (tiles, by default), or the frame's nearest and farthest depth (frame), without a pass more and with several times the error",
+    &["tiles", "frame"],
+);
+
+/// Whether pixels are drawn without looking at others.
+fn is_framed(spec: &MethodSpec) -> bool {
+    RANGE.word(spec) == "frame"
+}
+
+/// What a method keeps.
+fn design(spec: &MethodSpec) -> Design {
+    if spec.name().ends_with("wide") {
+        Design::WIDE
+    } else {
+        Design::ONE
+    }
+}
+
+const fn one(name: &'static str, about: &'static str) -> Method {
+    Method {
+        parameters: &[RANGE],
+        curve: &["", ":range=frame"],
+        expectations: expectations::ONE,
+        ..Method::new(name, about, passes)
+    }
+}
+
+pub(super) const METHOD: Method = one(
+    "one",
+    "one geometry pass: the nearest fragment with its colour, and three sums; 32 bytes a pixel, no network",
+);
+
+pub(super) const WIDE: Method = one(
+    "one-wide",
+    "the same with six sums, 64 bytes a pixel: more than WebGPU promises",
+);
+
+pub(super) const DEEP: Method = Method {
+    learned: true,
+    curve: &["", ":range=frame", ":scale=0.5"],
+    ..one(
+        "deep-one",
+        "one geometry pass, and a network that says how much of each of three sums is seen; 32 bytes a pixel",
+    )
+};
+
+pub(super) const DEEP_WIDE: Method = Method {
+    learned: true,
+    ..one(
+        "deep-one-wide",
+        "the same of six sums, 64 bytes a pixel: more than WebGPU promises",
+    )
+};
+
+fn passes(p: &mut Passes<'_>) {
+    let design = design(p.on.spec);
+    if p.on.recipe.is_none() {
+        p.network.push_str(
+            "// The answer without a network.\n\
+             fn peelnet_network(ahead: PeelnetAhead) -> f32 {\n    return 0.5;\n}\n",
+        );
+        for module in one_surroundings(design).modules {
+            let text = crate::shaders::source(module);
+            p.network.push_str(text.expect("modules of the repository"));
+        }
+    }
+    let is_wide = design == Design::WIDE;
+    let is_framed = is_framed(p.on.spec);
+    let features = || {
+        let wide = is_wide.then_some("wide").into_iter();
+        wide.chain(is_framed.then_some("frame"))
+    };
+    let kept = one_surroundings(design).passes[0].targets.iter();
+    let kept = kept.map(|target| Target::half(target.name, 4, Blend::AddMax));
+    let kept = p.targets(kept);
+    let mut quantiles = None;
+    if !is_framed {
+        let small = |target: Target| target.every(TILE);
+        let bins = ["bins_a", "bins_b", "bins_c", "bins_d"];
+        let bins = bins.map(|name| small(Target::half(name, 4, Blend::AddBytes)));
+        let nearest = small(Target::half("nearest", 1, Blend::Max));
+        let tiles = p.targets(bins.into_iter().chain([nearest]));
+        let [columns, rows] = p.on.size.map(|n| u64::from(n.div_ceil(TILE)));
+        let found = p.uncleared("quantiles", 4 * columns * rows);
+        p.geometry("methods::one::tiles", Needs::OPACITY)
+            .features(["tiles"])
+            .writes(tiles.iter().copied());
+        p.compute("methods::one::quantiles", columns * rows)
+            .reads(tiles)
+            .writes([found]);
+        quantiles = Some(found);
+    }
+    p.geometry("methods::one::gather", Needs::COLOR)
+        .features(features())
+        .reads(quantiles)
+        .writes(kept.iter().copied());
+    let tint = p.on.tinted.then(|| p.target(crate::passes::TINTED));
+    if let Some(tint) = tint {
+        p.geometry("methods::one::tint", Needs::COLOR)
+            .writes([tint]);
+    }
+    p.resolve("methods::one::resolve", kept)
+        .features(features().chain(tint.map(|_| "tinted")))
+        .reads(quantiles)
+        .reads(tint);
+}

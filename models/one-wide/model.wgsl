@@ -1,0 +1,475 @@
+// A learned weight for order-independent transparency. Exported by peelnet 0.1.0.
+// Licence of this generated text: MIT OR Apache-2.0.
+// WGSL, plain WebGPU. Compiled by naga, and run on a GPU against the network at every export.
+// Network: 9-12-1 (Relu hidden, Sigmoid last), 133 parameters, 120 multiply-adds. Recipe one-wide, seed 1, 40 epochs.
+// Answers: transmittance of the rest, exp(-rest * share) with rest = root_absorbance^2 and share in 0 .. 1.
+// Input 0: root_absorbance (root of twice the absorbance in front, by the formula), 0.0000018556286 .. 21.501703 in training.
+// Input 1: root_total (root of the absorbance of all sums), 0.028912654 .. 21.521168 in training.
+// Input 2: share_before (of the absorbance of all sums), 0.0 .. 1.0 in training.
+// Input 3: share_own (of the absorbance of all sums), 1.9267228e-14 .. 1.0 in training.
+// Input 4: share_previous (of the absorbance of all sums), 0.0 .. 0.99244475 in training.
+// Input 5: share_next (of the absorbance of all sums), 0.0 .. 0.9998849 in training.
+// Input 6: nearest_alpha (1), 0.0007731032 .. 0.99905795 in training.
+// Input 7: nearest_place (among the quantiles), 0.00012485312 .. 0.99942017 in training.
+// Input 8: number (0 for the first, 1 for the last sum), 0.0 .. 1.0 in training.
+// Trained on 21565798 rows of boxes, cups, foliage, intersecting, opaque-mix, panes, sixteen-025, sixteen-050, sixteen-075, sixteen-085, sixteen-random-alpha, sixteen-random-color, smoke-100, smoke-30, synthetic (dataset f0e6c4a7cca08d560f99a5be9cbd1514bf8be352632a347602bf08363695fd29+e22e844788a454658277e87e23685b5ffa00e3ad2d48cb833cc53130eaf4d8b7).
+// Loss: training 0.000413, validation 0.000399, test 0.000419.
+// Held-out error, mean |T - T_exact|: boxes-held 0.01369, cups-held 0.01177, foliage-held 0.01188, panes-held 0.00442, sixteen-held 0.01003, smoke-held 0.01131.
+//
+// Self-tests, to some roundings of 32 bits; weights and colours also to those of 16-bit targets.
+// peelnet_weight(0.48905447, 14.447163, 0.16887921, 0.7373583, 0.1906375, 0.034299895, 0.12910137, 0.435657, 0.7663156) = 0.78799194
+// peelnet_weight(0.72185737, 19.51733, 0.6035249, 0.06334585, 0.067343876, 0.58069897, 0.2156773, 0.5069676, 0.19226718) = 0.6567044
+// peelnet_weight(0.3009795, 2.949531, 0.26682287, 0.7078695, 0.54923105, 0.3416447, 0.69454503, 0.37148476, 0.9624051) = 0.9133934
+// Four fragments of a pixel, near 1.0, far 8.0, background 0.25, 0.5, 0.75:
+//    z 1.0, alpha 0.5, rgb 1.0, 0.0, 0.0: zeta -1.0, weight 1.0
+//    z 2.0, alpha 0.5, rgb 0.0, 1.0, 0.0: zeta -0.33333334, weight 0.51124465
+//    z 4.0, alpha 0.5, rgb 0.0, 0.0, 1.0: zeta 0.33333334, weight 0.26946592
+//    z 8.0, alpha 0.9, rgb 1.0, 1.0, 1.0: zeta 1.0, weight 0.10838507
+//    colour of the pixel: 0.6135939, 0.3594189, 0.24165452
+//
+// How to draw with it. Targets may have 32 bits a channel wherever 16 are named.
+// 0. zeta = peelnet_zeta(z, near, far): z is the distance along the view axis, near and far the range of z that the bounding boxes of the transparent objects in view span, clipped to the camera's. A tight range matters more than anything else you choose. Compute zeta with this function in all passes. Its range is the same for the whole frame: peelnet_zeta_in(z, peelnet_range(near, far)) is the same value, and the range may be passed in. Where boxes show that nothing lies between two depths, use peelnet_cut(zeta, gaps) for zeta: it leaves up to two such gaps out. quantiles says where among the depths around the pixel most is seen: peelnet_even() where nothing is known but near and far, with several times the error. To know it, draw depth and opacity alone at an eighth of the width and the height, the middles of its pixels 8 x + 4 and 8 y + 4 of the frame: peelnet_tile_bins into four rgba8unorm targets that add and peelnet_tile_nearest into one r16float target that keeps the most, cleared to 0 and to -65504; then sum peelnet_tile_seen of the nine pixels around each, group by group of four bins, and keep peelnet_quantiles of the sums. Read it with linear interpolation. noise is any number in 0 .. 1 that is the same for all of a pixel: it hides the steps of what is kept of the nearest fragment; 0.5 where that does not matter.
+// 1. Pass "gather": draw all transparent surfaces, in any order. let s = peelnet_statistics(alpha, rgb, zeta, quantiles, noise);
+//    sum_a: rgba16float, cleared to 0, 0, 0, -65504, blending ADD for rgb, MAX for alpha, from s.sum_a
+//    sum_b: rgba16float, cleared to 0, 0, 0, -65504, blending ADD for rgb, MAX for alpha, from s.sum_b
+//    sum_c: rgba16float, cleared to 0, 0, 0, -65504, blending ADD for rgb, MAX for alpha, from s.sum_c
+//    sum_d: rgba16float, cleared to 0, 0, 0, -65504, blending ADD for rgb, MAX for alpha, from s.sum_d
+//    sum_e: rgba16float, cleared to 0, 0, 0, -65504, blending ADD for rgb, MAX for alpha, from s.sum_e
+//    sum_f: rgba16float, cleared to 0, 0, 0, -65504, blending ADD for rgb, MAX for alpha, from s.sum_f
+//    absorbances: rgba16float, cleared to 0, 0, 0, -65504, blending ADD for rgb, MAX for alpha, from s.absorbances
+//    absorbances_back: rgba16float, cleared to 0, 0, 0, -65504, blending ADD for rgb, MAX for alpha, from s.absorbances_back
+// 2. Resolve: peelnet_resolve(sum_a, sum_b, sum_c, sum_d, sum_e, sum_f, absorbances, absorbances_back, quantiles, noise, background) is the colour of the pixel, and its coverage in alpha.
+// - alpha is opacity, rgb the linear colour that is not multiplied by it. Resolve before tone mapping and encoding.
+// - Test depth against the opaque surfaces, do not write it: a depth prepass with transparent surfaces in it hides what lies behind.
+// - z grows with distance, also where depth buffers are reversed.
+// - With multisampling, gather and resolve the statistics per sample: averaged samples of them mean nothing.
+
+// A range of depths: 1 / near, 0 where depths are on a linear scale; near; 2 / its extent on the scale, 0 for a flat range.
+struct PeelnetRange {
+    inverse_near: f32,
+    near: f32,
+    scale: f32,
+}
+
+// near, far: the nearest and the farthest z that transparent surfaces have in this frame. The same for all fragments: it may be
+// computed once a frame and passed in.
+fn peelnet_range(near: f32, far: f32) -> PeelnetRange {
+    let linear = near <= 0.0;
+    let inverse_near = select(1.0 / max(near, 1.17549435e-38), 0.0, linear);
+    let extent = select(log(max(far * inverse_near, 1.0)), far - near, linear);
+    // Closer than that, depths hardly differ.
+    let flat = extent <= select(1e-6, 0.0, linear);
+    return PeelnetRange(inverse_near, near, select(2.0 / max(extent, 1e-30), 0.0, flat));
+}
+
+// The depth z on the scale of a range, -1 at near and 1 at far.
+fn peelnet_zeta_in(z: f32, range: PeelnetRange) -> f32 {
+    // The logarithm of a ratio: the difference of two would depend on the scene's unit by their rounding.
+    let logarithmic = log(max(z * range.inverse_near, 1.0));
+    let from_near = select(logarithmic, z - range.near, range.inverse_near == 0.0);
+    return clamp(from_near * range.scale - 1.0, -1.0, 1.0);
+}
+
+// Depth on a logarithmic scale, -1 at near and 1 at far. z: distance along the view axis. Where near is not above 0 the scale is
+// linear: with an orthographic camera call peelnet_zeta(z - near, 0.0, far - near). A flat range has one value, -1.
+fn peelnet_zeta(z: f32, near: f32, far: f32) -> f32 {
+    return peelnet_zeta_in(z, peelnet_range(near, far));
+}
+
+// -log(1 - alpha), at most 16: opaque, but finite.
+fn peelnet_absorbance(alpha: f32) -> f32 {
+    return -log(max(1.0 - alpha, 1.1253517e-7));
+}
+
+// The half floats that stand for levels: all normal halves in ascending order, so that MAX blending of 16-bit targets
+// distinguishes 61440 levels. A step of a half's bits is 8192 in those of 32 bits; no step here rounds. No level is in the middle.
+fn peelnet_halves(levels: vec3f) -> vec3f {
+    let from_middle = levels - 30719.5;
+    return sign(from_middle) * bitcast<vec3f>(vec3i(abs(from_middle) * 8192.0 + 947908608.0));
+}
+
+fn peelnet_levels(halves: vec3f) -> vec3f {
+    let from_middle = vec3f(bitcast<vec3i>(abs(halves))) * 0.0001220703125 - 115711.5;
+    return 30719.5 + sign(halves) * from_middle;
+}
+
+// Bins of depth, and levels of opacity in each, of the nearest fragment of a tile's pixel.
+const PEELNET_TILE_DEPTHS: f32 = 240.0;
+const PEELNET_TILE_OPACITIES: f32 = 256.0;
+// Levels of depth, and of a value in each, that a pixel's nearest fragment is kept with.
+const PEELNET_DEPTHS: f32 = 480.0;
+const PEELNET_VALUES: f32 = 128.0;
+// Levels of 8 bits that an absorbance of 1 is.
+const PEELNET_BIN_LEVELS: f32 = 64.0;
+// b / (1 + b) of the most absorbance.
+const PEELNET_MOST: f32 = 0.941176471;
+
+// What is known of how much lies in front of one of a pixel's sums.
+struct PeelnetAhead {
+    // By the formula.
+    absorbance: f32,
+    // Absorbance of all sums, and the shares of it in the sums before, in this one, and in those before and behind it.
+    total: f32,
+    before: f32,
+    own: f32,
+    previous: f32,
+    next: f32,
+    // Opacity of the nearest fragment, and where it lies among the quantiles.
+    alpha: f32,
+    place: f32,
+    // 0 for the first sum, 1 for the last.
+    number: f32,
+}
+
+struct PeelnetNearest {
+    color: vec3f,
+    absorbance: f32,
+    place: f32,
+    // Coverage of the pixel, the nearest fragment's part of it, and what is left for the sums.
+    coverage: f32,
+    alpha: f32,
+    left: f32,
+}
+
+// Sixteen bins of depth, nearest first.
+struct PeelnetTile {
+    a: vec4f,
+    b: vec4f,
+    c: vec4f,
+    d: vec4f,
+}
+
+// The quantiles of a frame of which only near and far are known.
+fn peelnet_even() -> vec4f {
+    return vec4f(0.06, 0.35, 0.65, 0.94);
+}
+
+// A depth on a scale without two gaps in which no transparent surface lies, -1 .. 1 again. gaps: the ends of the nearer and of the farther one, as
+// zeta; four times 1 where there is none. The same in all passes of a frame.
+fn peelnet_cut(zeta: f32, gaps: vec4f) -> f32 {
+    let lengths = gaps.yw - gaps.xz;
+    let passed = clamp(vec2f(zeta) - gaps.xz, vec2f(0.0), lengths);
+    let kept = zeta + 1.0 - passed.x - passed.y;
+    return kept * (2.0 / (2.0 - lengths.x - lengths.y)) - 1.0;
+}
+
+// Where a depth, 0 .. 1 of the frame's, lies among quantiles, 0 .. 1.
+fn peelnet_place_among(depth: f32, quantiles: vec4f) -> f32 {
+    let begin = vec4f(0.0, quantiles.xyz);
+    let parts = clamp((vec4f(depth) - begin) / max(quantiles - begin, vec4f(1e-4)), vec4f(0.0), vec4f(1.0));
+    let last = clamp((depth - quantiles.w) / max(1.0 - quantiles.w, 1e-4), 0.0, 1.0);
+    return dot(parts, vec4f(0.06, 0.29, 0.3, 0.29)) + 0.06 * last;
+}
+
+// An absorbance's level, shared between four bins from a first one, in whole levels.
+fn peelnet_in_bins(level: f32, depth: f32, first: f32) -> vec4f {
+    let place = clamp(depth * 16.0 - 0.5, 0.0, 15.0) - first;
+    let shares = max(vec4f(1.0) - abs(vec4f(place) - vec4f(0.0, 1.0, 2.0, 3.0)), vec4f(0.0));
+    return floor(level * shares + 0.5);
+}
+
+fn peelnet_level(absorbance: f32) -> f32 {
+    // At least one: a bin with any fragment is not empty.
+    return max(floor(absorbance * PEELNET_BIN_LEVELS + 0.5), 1.0);
+}
+
+// What a fragment adds to the bins of its tile, of 8 bits.
+fn peelnet_tile_bins(alpha: f32, zeta: f32) -> PeelnetTile {
+    let level = peelnet_level(peelnet_absorbance(alpha));
+    let depth = 0.5 * zeta + 0.5;
+    return PeelnetTile(
+        peelnet_in_bins(level, depth, 0.0) / 255.0,
+        peelnet_in_bins(level, depth, 4.0) / 255.0,
+        peelnet_in_bins(level, depth, 8.0) / 255.0,
+        peelnet_in_bins(level, depth, 12.0) / 255.0,
+    );
+}
+
+// What a fragment writes as the nearest of its tile's pixel, where the most is kept.
+fn peelnet_tile_nearest(alpha: f32, zeta: f32) -> f32 {
+    let b = peelnet_absorbance(alpha);
+    let bin = min(floor((0.5 * zeta + 0.5) * PEELNET_TILE_DEPTHS), PEELNET_TILE_DEPTHS - 1.0);
+    let opacity = floor(b / (b + 1.0) * (1.0625 * (PEELNET_TILE_OPACITIES - 1.0)) + 0.5);
+    return peelnet_halves(vec3f((PEELNET_TILE_DEPTHS - 1.0 - bin) * PEELNET_TILE_OPACITIES + opacity)).x;
+}
+
+// Of four bins what is seen behind the nearest fragment. front: the levels of all bins before them.
+fn peelnet_seen(bins: vec4f, taken: vec4f, front: f32) -> vec4f {
+    let two = bins.x + bins.y;
+    let before = vec4f(front) + vec4f(0.0, bins.x, two, two + bins.z);
+    let seen = exp(before * (-1.0 / PEELNET_BIN_LEVELS)) - exp((before + bins) * (-1.0 / PEELNET_BIN_LEVELS));
+    return seen * max(bins - taken, vec4f(0.0)) / max(bins, vec4f(1.0));
+}
+
+// What is seen in a tile's pixel behind its nearest fragment. bins, nearest: as the targets hold them.
+fn peelnet_tile_seen(bins: PeelnetTile, nearest: f32) -> PeelnetTile {
+    let a = floor(bins.a * 255.0 + 0.5);
+    let b = floor(bins.b * 255.0 + 0.5);
+    let c = floor(bins.c * 255.0 + 0.5);
+    let d = floor(bins.d * 255.0 + 0.5);
+    let level = max(peelnet_levels(vec3f(nearest)).x, 0.0);
+    let back = floor(level * (1.0 / PEELNET_TILE_OPACITIES));
+    let opacity = (level - back * PEELNET_TILE_OPACITIES) * (1.0 / (PEELNET_TILE_OPACITIES - 1.0));
+    let depth = (PEELNET_TILE_DEPTHS - back - 0.5) / PEELNET_TILE_DEPTHS;
+    let taken = peelnet_level(opacity / (1.0625 - opacity));
+    let to_b = dot(a, vec4f(1.0));
+    let to_c = to_b + dot(b, vec4f(1.0));
+    let to_d = to_c + dot(c, vec4f(1.0));
+    return PeelnetTile(
+        peelnet_seen(a, peelnet_in_bins(taken, depth, 0.0), 0.0),
+        peelnet_seen(b, peelnet_in_bins(taken, depth, 4.0), to_b),
+        peelnet_seen(c, peelnet_in_bins(taken, depth, 8.0), to_c),
+        peelnet_seen(d, peelnet_in_bins(taken, depth, 12.0), to_d),
+    );
+}
+
+// How many of four bins lie before a share. before: what the bins before them hold.
+fn peelnet_passed(share: f32, before: f32, bins: vec4f) -> f32 {
+    let two = bins.x + bins.y;
+    let begin = vec4f(before) + vec4f(0.0, bins.x, two, two + bins.z);
+    return dot(clamp((vec4f(share) - begin) / max(bins, vec4f(1e-9)), vec4f(0.0), vec4f(1.0)), vec4f(1.0));
+}
+
+// The quantiles of what is seen in nine pixels together.
+fn peelnet_quantiles(seen: PeelnetTile) -> vec4f {
+    // Evenly spread where nothing is known.
+    let a = seen.a + 0.00125;
+    let b = seen.b + 0.00125;
+    let c = seen.c + 0.00125;
+    let d = seen.d + 0.00125;
+    let to_b = dot(a, vec4f(1.0));
+    let to_c = to_b + dot(b, vec4f(1.0));
+    let to_d = to_c + dot(c, vec4f(1.0));
+    let shares = peelnet_even() * (to_d + dot(d, vec4f(1.0)));
+    let first = peelnet_passed(shares.x, 0.0, a) + peelnet_passed(shares.x, to_b, b)
+        + peelnet_passed(shares.x, to_c, c) + peelnet_passed(shares.x, to_d, d);
+    let second = peelnet_passed(shares.y, 0.0, a) + peelnet_passed(shares.y, to_b, b)
+        + peelnet_passed(shares.y, to_c, c) + peelnet_passed(shares.y, to_d, d);
+    let third = peelnet_passed(shares.z, 0.0, a) + peelnet_passed(shares.z, to_b, b)
+        + peelnet_passed(shares.z, to_c, c) + peelnet_passed(shares.z, to_d, d);
+    let fourth = peelnet_passed(shares.w, 0.0, a) + peelnet_passed(shares.w, to_b, b)
+        + peelnet_passed(shares.w, to_c, c) + peelnet_passed(shares.w, to_d, d);
+    return vec4f(first, second, third, fourth) * 0.0625;
+}
+
+// Values without bound in 0 .. 1, in even steps of a root, and back.
+fn peelnet_to_unit(values: vec4f) -> vec4f {
+    let kept = max(values, vec4f(0.0));
+    return sqrt(min(kept / (vec4f(1.0) + kept) * (1.0 / PEELNET_MOST), vec4f(1.0)));
+}
+
+fn peelnet_from_unit(units: vec4f) -> vec4f {
+    let shares = units * units * PEELNET_MOST;
+    return shares / (vec4f(1.0) - shares);
+}
+
+// What a fragment writes as its pixel's nearest: red, green, blue and absorbance, each behind its depth, where the most is kept.
+fn peelnet_record(b: f32, rgb: vec3f, depth: f32, place: f32, noise: f32) -> vec4f {
+    let bin = clamp(floor(0.5 * (depth + place) * PEELNET_DEPTHS), 0.0, PEELNET_DEPTHS - 1.0);
+    let top = PEELNET_VALUES - 1.0;
+    let values = min(floor(peelnet_to_unit(vec4f(rgb, b)) * top + noise), vec4f(top));
+    let levels = values + (PEELNET_DEPTHS - 1.0 - bin) * PEELNET_VALUES;
+    return vec4f(peelnet_halves(levels.xyz), peelnet_halves(levels.www).x);
+}
+
+// The nearest fragment. halves: as the targets hold it. sums: of all sums red, green, blue and absorbance.
+fn peelnet_nearest(halves: vec4f, sums: vec4f, quantiles: vec4f, noise: f32) -> PeelnetNearest {
+    let levels = max(vec4f(peelnet_levels(halves.xyz), peelnet_levels(halves.www).x), vec4f(0.0));
+    let back = floor(levels * (1.0 / PEELNET_VALUES));
+    let top = PEELNET_VALUES - 1.0;
+    let steps = levels - back * PEELNET_VALUES + (0.5 - noise);
+    let units = clamp(steps / top, vec4f(0.0), vec4f(1.0));
+    let values = peelnet_from_unit(units);
+    let on_scale = (PEELNET_DEPTHS - back.w - 0.5) / PEELNET_DEPTHS;
+    let place = peelnet_place_among(on_scale, 0.5 * (quantiles + peelnet_even()));
+    let one = 1.0 + values.w;
+    let slack = 2.0 * peelnet_to_unit(values.wwww).x * PEELNET_MOST * one * one / top;
+    // All there is, as far as roundings can tell: its colour is the mean.
+    let alone = sums.w - values.w <= slack + sums.w * 0.0009765625;
+    let color = select(values.xyz, sums.xyz / max(sums.w, 1e-6), alone);
+    let absorbance = select(values.w, sums.w, alone);
+    let coverage = 1.0 - exp(-sums.w);
+    let alpha = min(1.0 - exp(-absorbance), coverage);
+    return PeelnetNearest(color, absorbance, place, coverage, alpha, coverage - alpha);
+}
+
+// A sum without the nearest fragment: red, green, blue and absorbance.
+fn peelnet_behind(rgb: vec3f, b: f32, share: f32, nearest: PeelnetNearest) -> vec4f {
+    let taken = nearest.absorbance * share;
+    return vec4f(max(min(rgb, vec3f(65504.0)) - taken * nearest.color, vec3f(0.0)), max(b - taken, 0.0));
+}
+
+// What an even mixture of some absorbance has in front of itself: log(b / (1 - exp(-b))).
+fn peelnet_inside(b: f32) -> f32 {
+    let some = max(b, 0.02);
+    return select(log(some / (1.0 - exp(-some))), b * (0.5 - b / 24.0), b < 0.02);
+}
+
+// How much of a sum is seen. before, previous, next: absorbances of the sums before, of the one before and of the one behind.
+fn peelnet_part(own: f32, before: f32, previous: f32, next: f32, total: f32, number: f32, nearest: PeelnetNearest) -> f32 {
+    let ahead = before + peelnet_inside(own);
+    let scale = 1.0 / max(total, 1e-6);
+    let known = PeelnetAhead(
+        ahead,
+        total,
+        before * scale,
+        own * scale,
+        previous * scale,
+        next * scale,
+        nearest.alpha,
+        nearest.place,
+        number,
+    );
+    return exp(-2.0 * ahead * peelnet_network(known));
+}
+
+// The pixel's colour over black, and its coverage. seen: of all sums what is seen of red, green, blue and absorbance.
+fn peelnet_over_black(nearest: PeelnetNearest, seen: vec4f) -> vec4f {
+    let rest = select(nearest.color, seen.rgb / max(seen.a, 1.17549435e-38), seen.a > 0.0);
+    return vec4f(nearest.alpha * nearest.color + nearest.left * rest, nearest.coverage);
+}
+
+struct PeelnetStatistics {
+    sum_a: vec4f,
+    sum_b: vec4f,
+    sum_c: vec4f,
+    sum_d: vec4f,
+    sum_e: vec4f,
+    sum_f: vec4f,
+    absorbances: vec4f,
+    absorbances_back: vec4f,
+}
+
+// How a fragment at a place among the quantiles is shared between the sums.
+struct PeelnetShares {
+    front: vec3f,
+    back: vec3f,
+}
+
+fn peelnet_shares(place: f32) -> PeelnetShares {
+    let off_front = (vec3f(place) - vec3f(0.199, 0.315, 0.495)) * (1.0 / vec3f(0.069, 0.074, 0.072));
+    let off_back = (vec3f(place) - vec3f(0.635, 0.784, 0.948)) * (1.0 / vec3f(0.058, 0.068, 0.093));
+    let front = exp(-0.5 * off_front * off_front);
+    let back = exp(-0.5 * off_back * off_back);
+    let all = front + back;
+    let scale = 1.0 / (all.x + all.y + all.z);
+    return PeelnetShares(front * scale, back * scale);
+}
+
+// What a fragment writes.
+fn peelnet_statistics(alpha: f32, rgb: vec3f, zeta: f32, quantiles: vec4f, noise: f32) -> PeelnetStatistics {
+    let b = peelnet_absorbance(alpha);
+    let depth = 0.5 * zeta + 0.5;
+    let place = peelnet_place_among(depth, quantiles);
+    let record = peelnet_record(b, rgb, depth, place, noise);
+    let shares = peelnet_shares(place);
+    let front = b * shares.front;
+    let back = b * shares.back;
+    return PeelnetStatistics(
+        vec4f(rgb * front.x, record.x),
+        vec4f(rgb * front.y, record.y),
+        vec4f(rgb * front.z, record.z),
+        vec4f(rgb * back.x, -65504.0),
+        vec4f(rgb * back.y, -65504.0),
+        vec4f(rgb * back.z, -65504.0),
+        vec4f(front, record.w),
+        vec4f(back, -65504.0),
+    );
+}
+
+// The colour of a pixel over black, and its coverage.
+fn peelnet_pixel(
+    sum_a: vec4f,
+    sum_b: vec4f,
+    sum_c: vec4f,
+    sum_d: vec4f,
+    sum_e: vec4f,
+    sum_f: vec4f,
+    absorbances: vec4f,
+    absorbances_back: vec4f,
+    quantiles: vec4f,
+    noise: f32,
+) -> vec4f {
+    let front = min(absorbances.xyz, vec3f(65504.0));
+    let back = min(absorbances_back.xyz, vec3f(65504.0));
+    let both = front + back;
+    let colors = sum_a.rgb + sum_b.rgb + sum_c.rgb + sum_d.rgb + sum_e.rgb + sum_f.rgb;
+    let all = vec4f(colors, both.x + both.y + both.z);
+    let nearest = peelnet_nearest(vec4f(sum_a.w, sum_b.w, sum_c.w, absorbances.w), all, quantiles, noise);
+    let shares = peelnet_shares(nearest.place);
+    let a = peelnet_behind(sum_a.rgb, front.x, shares.front.x, nearest);
+    let b = peelnet_behind(sum_b.rgb, front.y, shares.front.y, nearest);
+    let c = peelnet_behind(sum_c.rgb, front.z, shares.front.z, nearest);
+    let d = peelnet_behind(sum_d.rgb, back.x, shares.back.x, nearest);
+    let e = peelnet_behind(sum_e.rgb, back.y, shares.back.y, nearest);
+    let f = peelnet_behind(sum_f.rgb, back.z, shares.back.z, nearest);
+    let to_c = a.w + b.w;
+    let to_d = to_c + c.w;
+    let to_e = to_d + d.w;
+    let to_f = to_e + e.w;
+    let total = to_f + f.w;
+    let seen = a * peelnet_part(a.w, 0.0, 0.0, b.w, total, 0.0, nearest)
+        + b * peelnet_part(b.w, a.w, a.w, c.w, total, 0.2, nearest)
+        + c * peelnet_part(c.w, to_c, b.w, d.w, total, 0.4, nearest)
+        + d * peelnet_part(d.w, to_d, c.w, e.w, total, 0.6, nearest)
+        + e * peelnet_part(e.w, to_e, d.w, f.w, total, 0.8, nearest)
+        + f * peelnet_part(f.w, to_f, e.w, 0.0, total, 1.0, nearest);
+    return peelnet_over_black(nearest, seen);
+}
+
+// The colour and coverage of a pixel.
+fn peelnet_resolve(
+    sum_a: vec4f,
+    sum_b: vec4f,
+    sum_c: vec4f,
+    sum_d: vec4f,
+    sum_e: vec4f,
+    sum_f: vec4f,
+    absorbances: vec4f,
+    absorbances_back: vec4f,
+    quantiles: vec4f,
+    noise: f32,
+    background: vec3f,
+) -> vec4f {
+    let pixel = peelnet_pixel(
+        sum_a, sum_b, sum_c, sum_d, sum_e, sum_f, absorbances, absorbances_back, quantiles, noise);
+    return vec4f(pixel.rgb + (1.0 - pixel.a) * background, pixel.a);
+}
+
+// The network's answer for what is known of a fragment.
+fn peelnet_network(ahead: PeelnetAhead) -> f32 {
+    return peelnet_share(
+        sqrt(2.0 * ahead.absorbance), sqrt(ahead.total), ahead.before, ahead.own, ahead.previous, ahead.next, ahead.alpha, ahead.place, ahead.number);
+}
+
+// The share of the rest's absorbance that lies in front, for inputs as peelnet_network evaluates them.
+fn peelnet_share(root_absorbance: f32, root_total: f32, share_before: f32, share_own: f32, share_previous: f32, share_next: f32, nearest_alpha: f32, nearest_place: f32, number: f32) -> f32 {
+    let input_a = vec4f(root_absorbance, root_total, share_before, share_own);
+    let input_b = vec4f(share_previous, share_next, nearest_alpha, nearest_place);
+    let input_c = vec4f(number, 0.0, 0.0, 0.0);
+    let layer_a_a = max(vec4f(0.4666205, -0.11575089, -0.029181149, 1.8437698)
+        + mat4x4f(vec4f(0.3547842, 0.039882265, -0.3105391, -0.18115288), vec4f(-0.34781784, 0.006398668, 0.018371975, 0.11330409), vec4f(0.2559351, -7.810839, -4.0731845, -1.8063126), vec4f(1.8923279, 0.12605865, -7.0934877, 1.2109178)) * input_a
+        + mat4x4f(vec4f(0.19472857, 7.354236, 4.370808, 0.2715109), vec4f(-3.0465987, -0.055315677, -0.2180793, 0.73340905), vec4f(0.3802175, 0.09960899, 0.28415978, -0.8623496), vec4f(-0.7813807, 0.06559046, 0.122198105, -3.6882675)) * input_b
+        + vec4f(-0.49502563, 0.04803964, 1.0847343, -2.0858264) * input_c.x, vec4f(0.0));
+    let layer_a_b = max(vec4f(0.6841537, -1.283513, 0.01808118, -2.7702737)
+        + mat4x4f(vec4f(-0.27815422, 0.2784779, 0.04891465, 0.6194494), vec4f(-0.026438346, 0.10748321, -0.009076034, 0.31701574), vec4f(-1.9829249, 2.0580642, -8.987123, -2.6037), vec4f(-5.465318, 2.613381, 0.029313307, 1.6462734)) * input_a
+        + mat4x4f(vec4f(3.325333, -3.2342646, 8.94207, 5.303125), vec4f(-3.145362, 1.1029466, -0.038704406, 1.7081681), vec4f(0.16217414, 0.4731318, 0.0766495, 0.44500396), vec4f(0.57896876, 0.10999332, 0.03734211, 0.048228577)) * input_b
+        + vec4f(0.39946175, -0.64154, 0.02344602, -0.31209108) * input_c.x, vec4f(0.0));
+    let layer_a_c = max(vec4f(0.93011147, -0.29465568, 0.6689869, 2.431103)
+        + mat4x4f(vec4f(-0.6942789, 0.09865242, -0.07241759, -0.14728548), vec4f(-0.2459893, 0.05392831, 0.0044569764, -0.14052507), vec4f(-0.79780096, -1.0737534, -0.63217336, -0.65091354), vec4f(-5.361806, 1.187457, -7.802415, -0.96311826)) * input_a
+        + mat4x4f(vec4f(-0.5452086, 7.839788, 0.8022129, -2.4772303), vec4f(1.918296, -1.648276, 1.0332565, -3.8952055), vec4f(0.30027014, -0.8653171, 0.011285074, 1.3065099), vec4f(-0.06556393, -0.48770645, 0.15395866, 0.1755579)) * input_b
+        + vec4f(-0.3574266, 0.47350645, 0.042817708, -0.42319676) * input_c.x, vec4f(0.0));
+    let layer_b_a = 1.0 / (1.0 + exp(min(-(-0.22486302
+        + dot(vec4f(-0.37063545, 8.715594, -3.8145647, -0.19707212), layer_a_a)
+        + dot(vec4f(2.7676816, 0.3040865, 7.2079797, 0.32819167), layer_a_b)
+        + dot(vec4f(-3.7903945, 0.3103553, -0.5123967, 0.36474672), layer_a_c)), 80.0)));
+    return layer_b_a;
+}
+
+// Its transmittance, for any finite inputs.
+fn peelnet_weight(root_absorbance: f32, root_total: f32, share_before: f32, share_own: f32, share_previous: f32, share_next: f32, nearest_alpha: f32, nearest_place: f32, number: f32) -> f32 {
+    let root = clamp(root_absorbance, 0.0, 256.0);
+    let share = peelnet_share(
+        clamp(root_absorbance, -14583.727, 14586.654), clamp(root_total, -29725.627, 29732.018), clamp(share_before, -2963.0286, 2963.4841), clamp(share_own, -2498.6606, 2499.0288), clamp(share_previous, -1548.4214, 1548.6111), clamp(share_next, -2496.274, 2496.6147), clamp(nearest_alpha, -3192.155, 3192.9812), clamp(nearest_place, -1795.963, 1796.2181), clamp(number, -3346.1912, 3347.2424));
+    return exp(-root * root * share);
+}

@@ -1,0 +1,460 @@
+// A learned weight for order-independent transparency. Exported by peelnet 0.1.0.
+// Licence of this generated text: MIT OR Apache-2.0.
+// HLSL, shader model 6.0.
+// Network: 9-12-1 (Relu hidden, Sigmoid last), 133 parameters, 120 multiply-adds. Recipe one, seed 1, 40 epochs.
+// Answers: transmittance of the rest, exp(-rest * share) with rest = root_absorbance^2 and share in 0 .. 1.
+// Input 0: root_absorbance (root of twice the absorbance in front, by the formula), 0.000093077906 .. 15.9079275 in training.
+// Input 1: root_total (root of the absorbance of all sums), 0.02891372 .. 21.513378 in training.
+// Input 2: share_before (of the absorbance of all sums), 0.0 .. 0.9999994 in training.
+// Input 3: share_own (of the absorbance of all sums), 1.7657054e-9 .. 1.0 in training.
+// Input 4: share_previous (of the absorbance of all sums), 0.0 .. 0.97727245 in training.
+// Input 5: share_next (of the absorbance of all sums), 0.0 .. 0.99999946 in training.
+// Input 6: nearest_alpha (1), 0.0007731032 .. 0.99905795 in training.
+// Input 7: nearest_place (among the quantiles), 0.00012485312 .. 0.99942017 in training.
+// Input 8: number (0 for the first, 1 for the last sum), 0.0 .. 1.0 in training.
+// Trained on 21565798 rows of boxes, cups, foliage, intersecting, opaque-mix, panes, sixteen-025, sixteen-050, sixteen-075, sixteen-085, sixteen-random-alpha, sixteen-random-color, smoke-100, smoke-30, synthetic (dataset f0e6c4a7cca08d560f99a5be9cbd1514bf8be352632a347602bf08363695fd29+e22e844788a454658277e87e23685b5ffa00e3ad2d48cb833cc53130eaf4d8b7).
+// Loss: training 0.000611, validation 0.000593, test 0.000615.
+// Held-out error, mean |T - T_exact|: boxes-held 0.02373, cups-held 0.02206, foliage-held 0.01878, panes-held 0.00820, sixteen-held 0.01624, smoke-held 0.01757.
+//
+// Self-tests, to some roundings of 32 bits; weights and colours also to those of 16-bit targets.
+// peelnet_weight(0.36191413, 14.441937, 0.1688791, 0.7373583, 0.18772307, 0.034303825, 0.12910137, 0.435657, 0.7663156) = 0.8772337
+// peelnet_weight(3.9770136, 18.642227, 0.7144341, 0.43257523, 0.14753379, 0.62058616, 0.794909, 0.9875111, 0.36102802) = 0.47685304
+// peelnet_weight(1.9873397, 0.5672196, 0.37864107, 0.595821, 0.2760697, 0.3106894, 0.6235468, 0.40476447, 0.91731685) = 0.052649572
+// Four fragments of a pixel, near 1.0, far 8.0, background 0.25, 0.5, 0.75:
+//    z 1.0, alpha 0.5, rgb 1.0, 0.0, 0.0: zeta -1.0, weight 1.0
+//    z 2.0, alpha 0.5, rgb 0.0, 1.0, 0.0: zeta -0.33333334, weight 0.49703375
+//    z 4.0, alpha 0.5, rgb 0.0, 0.0, 1.0: zeta 0.33333334, weight 0.2812811
+//    z 8.0, alpha 0.9, rgb 1.0, 1.0, 1.0: zeta 1.0, weight 0.108837925
+//    colour of the pixel: 0.61373997, 0.352721, 0.24796969
+//
+// How to draw with it. Targets may have 32 bits a channel wherever 16 are named.
+// 0. zeta = peelnet_zeta(z, near, far): z is the distance along the view axis, near and far the range of z that the bounding boxes of the transparent objects in view span, clipped to the camera's. A tight range matters more than anything else you choose. Compute zeta with this function in all passes. Its range is the same for the whole frame: peelnet_zeta_in(z, peelnet_range(near, far)) is the same value, and the range may be passed in. Where boxes show that nothing lies between two depths, use peelnet_cut(zeta, gaps) for zeta: it leaves up to two such gaps out. quantiles says where among the depths around the pixel most is seen: peelnet_even() where nothing is known but near and far, with several times the error. To know it, draw depth and opacity alone at an eighth of the width and the height, the middles of its pixels 8 x + 4 and 8 y + 4 of the frame: peelnet_tile_bins into four rgba8unorm targets that add and peelnet_tile_nearest into one r16float target that keeps the most, cleared to 0 and to -65504; then sum peelnet_tile_seen of the nine pixels around each, group by group of four bins, and keep peelnet_quantiles of the sums. Read it with linear interpolation. noise is any number in 0 .. 1 that is the same for all of a pixel: it hides the steps of what is kept of the nearest fragment; 0.5 where that does not matter.
+// 1. Pass "gather": draw all transparent surfaces, in any order. PeelnetStatistics s = peelnet_statistics(alpha, rgb, zeta, quantiles, noise);
+//    sum_a: rgba16float, cleared to 0, 0, 0, -65504, blending ADD for rgb, MAX for alpha, from s.sum_a
+//    sum_b: rgba16float, cleared to 0, 0, 0, -65504, blending ADD for rgb, MAX for alpha, from s.sum_b
+//    sum_c: rgba16float, cleared to 0, 0, 0, -65504, blending ADD for rgb, MAX for alpha, from s.sum_c
+//    absorbances: rgba16float, cleared to 0, 0, 0, -65504, blending ADD for rgb, MAX for alpha, from s.absorbances
+// 2. Resolve: peelnet_resolve(sum_a, sum_b, sum_c, absorbances, quantiles, noise, background) is the colour of the pixel, and its coverage in alpha.
+// - alpha is opacity, rgb the linear colour that is not multiplied by it. Resolve before tone mapping and encoding.
+// - Test depth against the opaque surfaces, do not write it: a depth prepass with transparent surfaces in it hides what lies behind.
+// - z grows with distance, also where depth buffers are reversed.
+// - With multisampling, gather and resolve the statistics per sample: averaged samples of them mean nothing.
+
+struct PeelnetRange {
+    float inverse_near;
+    float near;
+    float scale;
+};
+
+struct PeelnetAhead {
+    float absorbance;
+    float total;
+    float before;
+    float own;
+    float previous;
+    float next;
+    float alpha;
+    float place;
+    float number;
+};
+
+struct PeelnetNearest {
+    float3 color;
+    float absorbance;
+    float place;
+    float coverage;
+    float alpha;
+    float left;
+};
+
+struct PeelnetTile {
+    float4 a;
+    float4 b;
+    float4 c;
+    float4 d;
+};
+
+struct PeelnetStatistics {
+    float4 sum_a;
+    float4 sum_b;
+    float4 sum_c;
+    float4 absorbances;
+};
+
+static const float PEELNET_TILE_DEPTHS = 240.0;
+static const float PEELNET_TILE_OPACITIES = 256.0;
+static const float PEELNET_DEPTHS = 480.0;
+static const float PEELNET_VALUES = 128.0;
+static const float PEELNET_BIN_LEVELS = 64.0;
+static const float PEELNET_MOST = 0.9411765;
+
+PeelnetRange ConstructPeelnetRange(float arg0, float arg1, float arg2) {
+    PeelnetRange ret = (PeelnetRange)0;
+    ret.inverse_near = arg0;
+    ret.near = arg1;
+    ret.scale = arg2;
+    return ret;
+}
+
+PeelnetRange peelnet_range(float near, float far)
+{
+    bool linear_ = (near <= 0.0);
+    float inverse_near = (linear_ ? 0.0 : (1.0 / max(near, 1.1754944e-38)));
+    float extent = (linear_ ? (far - near) : log(max((far * inverse_near), 1.0)));
+    bool flat = (extent <= (linear_ ? 0.0 : 1e-6));
+    const PeelnetRange peelnetrange = ConstructPeelnetRange(inverse_near, near, (flat ? 0.0 : (2.0 / max(extent, 1e-30))));
+    return peelnetrange;
+}
+
+float peelnet_zeta_in(float z, PeelnetRange range)
+{
+    float logarithmic = log(max((z * range.inverse_near), 1.0));
+    float from_near = ((range.inverse_near == 0.0) ? (z - range.near) : logarithmic);
+    return clamp(((from_near * range.scale) - 1.0), -1.0, 1.0);
+}
+
+float peelnet_zeta(float z_1, float near_1, float far_1)
+{
+    const PeelnetRange _e3 = peelnet_range(near_1, far_1);
+    const float _e4 = peelnet_zeta_in(z_1, _e3);
+    return _e4;
+}
+
+float peelnet_absorbance(float alpha)
+{
+    return -(log(max((1.0 - alpha), 1.1253517e-7)));
+}
+
+int3 naga_f2i32(float3 value) {
+    return int3(clamp(value, -2147483600.0, 2147483500.0));
+}
+
+float3 peelnet_halves(float3 levels)
+{
+    float3 from_middle = (levels - (30719.5).xxx);
+    return (sign(from_middle) * asfloat(naga_f2i32(((abs(from_middle) * 8192.0) + (947908600.0).xxx))));
+}
+
+float3 peelnet_levels(float3 halves)
+{
+    float3 from_middle_1 = ((float3(asint(abs(halves))) * 0.00012207031) - (115711.5).xxx);
+    return ((30719.5).xxx + (sign(halves) * from_middle_1));
+}
+
+float4 peelnet_even()
+{
+    return float4(0.06, 0.35, 0.65, 0.94);
+}
+
+float peelnet_cut(float zeta, float4 gaps)
+{
+    float2 lengths = (gaps.yw - gaps.xz);
+    float2 passed = clamp(((zeta).xx - gaps.xz), (0.0).xx, lengths);
+    float kept = (((zeta + 1.0) - passed.x) - passed.y);
+    return ((kept * (2.0 / ((2.0 - lengths.x) - lengths.y))) - 1.0);
+}
+
+float peelnet_place_among(float depth, float4 quantiles)
+{
+    float4 begin = float4(0.0, quantiles.xyz);
+    float4 parts = clamp((((depth).xxxx - begin) / max((quantiles - begin), (0.0001).xxxx)), (0.0).xxxx, (1.0).xxxx);
+    float last = clamp(((depth - quantiles.w) / max((1.0 - quantiles.w), 0.0001)), 0.0, 1.0);
+    return (dot(parts, float4(0.06, 0.29, 0.3, 0.29)) + (0.06 * last));
+}
+
+float4 peelnet_in_bins(float level, float depth_1, float first)
+{
+    float place_2 = (clamp(((depth_1 * 16.0) - 0.5), 0.0, 15.0) - first);
+    float4 shares = max(((1.0).xxxx - abs(((place_2).xxxx - float4(0.0, 1.0, 2.0, 3.0)))), (0.0).xxxx);
+    return floor(((level * shares) + (0.5).xxxx));
+}
+
+float peelnet_level(float absorbance)
+{
+    return max(floor(((absorbance * PEELNET_BIN_LEVELS) + 0.5)), 1.0);
+}
+
+PeelnetTile ConstructPeelnetTile(float4 arg0, float4 arg1, float4 arg2, float4 arg3) {
+    PeelnetTile ret = (PeelnetTile)0;
+    ret.a = arg0;
+    ret.b = arg1;
+    ret.c = arg2;
+    ret.d = arg3;
+    return ret;
+}
+
+PeelnetTile peelnet_tile_bins(float alpha_1, float zeta_1)
+{
+    const float _e2 = peelnet_absorbance(alpha_1);
+    const float _e3 = peelnet_level(_e2);
+    float depth_3 = ((0.5 * zeta_1) + 0.5);
+    const float4 _e9 = peelnet_in_bins(_e3, depth_3, 0.0);
+    const float4 _e14 = peelnet_in_bins(_e3, depth_3, 4.0);
+    const float4 _e19 = peelnet_in_bins(_e3, depth_3, 8.0);
+    const float4 _e24 = peelnet_in_bins(_e3, depth_3, 12.0);
+    const PeelnetTile peelnettile = ConstructPeelnetTile((_e9 / (255.0).xxxx), (_e14 / (255.0).xxxx), (_e19 / (255.0).xxxx), (_e24 / (255.0).xxxx));
+    return peelnettile;
+}
+
+float peelnet_tile_nearest(float alpha_2, float zeta_2)
+{
+    const float _e2 = peelnet_absorbance(alpha_2);
+    float bin = min(floor((((0.5 * zeta_2) + 0.5) * PEELNET_TILE_DEPTHS)), 239.0);
+    float opacity = floor((((_e2 / (_e2 + 1.0)) * 270.9375) + 0.5));
+    const float3 _e26 = peelnet_halves(((((239.0 - bin) * PEELNET_TILE_OPACITIES) + opacity)).xxx);
+    return _e26.x;
+}
+
+float4 peelnet_seen(float4 bins, float4 taken, float front)
+{
+    float two = (bins.x + bins.y);
+    float4 before_2 = ((front).xxxx + float4(0.0, bins.x, two, (two + bins.z)));
+    float4 seen_2 = (exp((before_2 * -0.015625)) - exp(((before_2 + bins) * -0.015625)));
+    return ((seen_2 * max((bins - taken), (0.0).xxxx)) / max(bins, (1.0).xxxx));
+}
+
+PeelnetTile peelnet_tile_seen(PeelnetTile bins_1, float nearest)
+{
+    float4 a = floor(((bins_1.a * 255.0) + (0.5).xxxx));
+    float4 b_3 = floor(((bins_1.b * 255.0) + (0.5).xxxx));
+    float4 c = floor(((bins_1.c * 255.0) + (0.5).xxxx));
+    float4 d = floor(((bins_1.d * 255.0) + (0.5).xxxx));
+    const float3 _e31 = peelnet_levels((nearest).xxx);
+    float level_1 = max(_e31.x, 0.0);
+    float back = floor((level_1 * 0.00390625));
+    float opacity_1 = ((level_1 - (back * PEELNET_TILE_OPACITIES)) * 0.003921569);
+    float depth_4 = (((PEELNET_TILE_DEPTHS - back) - 0.5) / PEELNET_TILE_DEPTHS);
+    const float _e52 = peelnet_level((opacity_1 / (1.0625 - opacity_1)));
+    float to_b = dot(a, (1.0).xxxx);
+    float to_c = (to_b + dot(b_3, (1.0).xxxx));
+    float to_d = (to_c + dot(c, (1.0).xxxx));
+    const float4 _e65 = peelnet_in_bins(_e52, depth_4, 0.0);
+    const float4 _e67 = peelnet_seen(a, _e65, 0.0);
+    const float4 _e69 = peelnet_in_bins(_e52, depth_4, 4.0);
+    const float4 _e70 = peelnet_seen(b_3, _e69, to_b);
+    const float4 _e72 = peelnet_in_bins(_e52, depth_4, 8.0);
+    const float4 _e73 = peelnet_seen(c, _e72, to_c);
+    const float4 _e75 = peelnet_in_bins(_e52, depth_4, 12.0);
+    const float4 _e76 = peelnet_seen(d, _e75, to_d);
+    const PeelnetTile peelnettile_1 = ConstructPeelnetTile(_e67, _e70, _e73, _e76);
+    return peelnettile_1;
+}
+
+float peelnet_passed(float share, float before, float4 bins_2)
+{
+    float two_1 = (bins_2.x + bins_2.y);
+    float4 begin_1 = ((before).xxxx + float4(0.0, bins_2.x, two_1, (two_1 + bins_2.z)));
+    return dot(clamp((((share).xxxx - begin_1) / max(bins_2, (1e-9).xxxx)), (0.0).xxxx, (1.0).xxxx), (1.0).xxxx);
+}
+
+float4 peelnet_quantiles(PeelnetTile seen)
+{
+    float4 a_1 = (seen.a + (0.00125).xxxx);
+    float4 b_4 = (seen.b + (0.00125).xxxx);
+    float4 c_1 = (seen.c + (0.00125).xxxx);
+    float4 d_1 = (seen.d + (0.00125).xxxx);
+    float to_b_1 = dot(a_1, (1.0).xxxx);
+    float to_c_1 = (to_b_1 + dot(b_4, (1.0).xxxx));
+    float to_d_1 = (to_c_1 + dot(c_1, (1.0).xxxx));
+    const float4 _e28 = peelnet_even();
+    float4 shares_1 = (_e28 * (to_d_1 + dot(d_1, (1.0).xxxx)));
+    const float _e36 = peelnet_passed(shares_1.x, 0.0, a_1);
+    const float _e38 = peelnet_passed(shares_1.x, to_b_1, b_4);
+    const float _e41 = peelnet_passed(shares_1.x, to_c_1, c_1);
+    const float _e44 = peelnet_passed(shares_1.x, to_d_1, d_1);
+    float first_1 = (((_e36 + _e38) + _e41) + _e44);
+    const float _e48 = peelnet_passed(shares_1.y, 0.0, a_1);
+    const float _e50 = peelnet_passed(shares_1.y, to_b_1, b_4);
+    const float _e53 = peelnet_passed(shares_1.y, to_c_1, c_1);
+    const float _e56 = peelnet_passed(shares_1.y, to_d_1, d_1);
+    float second = (((_e48 + _e50) + _e53) + _e56);
+    const float _e60 = peelnet_passed(shares_1.z, 0.0, a_1);
+    const float _e62 = peelnet_passed(shares_1.z, to_b_1, b_4);
+    const float _e65 = peelnet_passed(shares_1.z, to_c_1, c_1);
+    const float _e68 = peelnet_passed(shares_1.z, to_d_1, d_1);
+    float third = (((_e60 + _e62) + _e65) + _e68);
+    const float _e72 = peelnet_passed(shares_1.w, 0.0, a_1);
+    const float _e74 = peelnet_passed(shares_1.w, to_b_1, b_4);
+    const float _e77 = peelnet_passed(shares_1.w, to_c_1, c_1);
+    const float _e80 = peelnet_passed(shares_1.w, to_d_1, d_1);
+    float fourth = (((_e72 + _e74) + _e77) + _e80);
+    return (float4(first_1, second, third, fourth) * 0.0625);
+}
+
+float4 peelnet_to_unit(float4 values)
+{
+    float4 kept_1 = max(values, (0.0).xxxx);
+    return sqrt(min(((kept_1 / ((1.0).xxxx + kept_1)) * 1.0625), (1.0).xxxx));
+}
+
+float4 peelnet_from_unit(float4 units)
+{
+    float4 shares_2 = ((units * units) * PEELNET_MOST);
+    return (shares_2 / ((1.0).xxxx - shares_2));
+}
+
+float4 peelnet_record(float b, float3 rgb, float depth_2, float place, float noise_)
+{
+    float bin_1 = clamp(floor(((0.5 * (depth_2 + place)) * PEELNET_DEPTHS)), 0.0, 479.0);
+    const float4 _e16 = peelnet_to_unit(float4(rgb, b));
+    float4 values_1 = min(floor(((_e16 * 127.0) + (noise_).xxxx)), (127.0).xxxx);
+    float4 levels_1 = (values_1 + (((479.0 - bin_1) * PEELNET_VALUES)).xxxx);
+    const float3 _e30 = peelnet_halves(levels_1.xyz);
+    const float3 _e32 = peelnet_halves(levels_1.www);
+    return float4(_e30, _e32.x);
+}
+
+PeelnetNearest ConstructPeelnetNearest(float3 arg0, float arg1, float arg2, float arg3, float arg4, float arg5) {
+    PeelnetNearest ret = (PeelnetNearest)0;
+    ret.color = arg0;
+    ret.absorbance = arg1;
+    ret.place = arg2;
+    ret.coverage = arg3;
+    ret.alpha = arg4;
+    ret.left = arg5;
+    return ret;
+}
+
+PeelnetNearest peelnet_nearest(float4 halves_1, float4 sums, float4 quantiles_1, float noise_1)
+{
+    const float3 _e5 = peelnet_levels(halves_1.xyz);
+    const float3 _e7 = peelnet_levels(halves_1.www);
+    float4 levels_2 = max(float4(_e5, _e7.x), (0.0).xxxx);
+    float4 back_1 = floor((levels_2 * 0.0078125));
+    float4 steps = ((levels_2 - (back_1 * PEELNET_VALUES)) + ((0.5 - noise_1)).xxxx);
+    float4 units_1 = clamp((steps / (127.0).xxxx), (0.0).xxxx, (1.0).xxxx);
+    const float4 _e31 = peelnet_from_unit(units_1);
+    float on_scale = (((PEELNET_DEPTHS - back_1.w) - 0.5) / PEELNET_DEPTHS);
+    const float4 _e39 = peelnet_even();
+    const float _e43 = peelnet_place_among(on_scale, (0.5 * (quantiles_1 + _e39)));
+    float one = (1.0 + _e31.w);
+    const float4 _e48 = peelnet_to_unit(_e31.wwww);
+    float slack = (((((2.0 * _e48.x) * PEELNET_MOST) * one) * one) / 127.0);
+    bool alone = ((sums.w - _e31.w) <= (slack + (sums.w * 0.0009765625)));
+    float3 color = (alone ? (sums.xyz / (max(sums.w, 1e-6)).xxx) : _e31.xyz);
+    float absorbance_1 = (alone ? sums.w : _e31.w);
+    float coverage = (1.0 - exp(-(sums.w)));
+    float alpha_4 = min((1.0 - exp(-(absorbance_1))), coverage);
+    const PeelnetNearest peelnetnearest = ConstructPeelnetNearest(color, absorbance_1, _e43, coverage, alpha_4, (coverage - alpha_4));
+    return peelnetnearest;
+}
+
+float4 peelnet_behind(float3 rgb_1, float b_1, float share_1, PeelnetNearest nearest_1)
+{
+    float taken_1 = (nearest_1.absorbance * share_1);
+    return float4(max((min(rgb_1, (65504.0).xxx) - (taken_1 * nearest_1.color)), (0.0).xxx), max((b_1 - taken_1), 0.0));
+}
+
+float peelnet_inside(float b_2)
+{
+    float some = max(b_2, 0.02);
+    return ((b_2 < 0.02) ? (b_2 * (0.5 - (b_2 / 24.0))) : log((some / (1.0 - exp(-(some))))));
+}
+
+float peelnet_share(float root_absorbance, float root_total, float share_before, float share_own, float share_previous, float share_next, float nearest_alpha, float nearest_place, float number)
+{
+    float4 input_a = float4(root_absorbance, root_total, share_before, share_own);
+    float4 input_b = float4(share_previous, share_next, nearest_alpha, nearest_place);
+    float4 input_c = float4(number, 0.0, 0.0, 0.0);
+    float4 layer_a_a = max((((float4(-0.3643585, -1.6444997, 2.879028, 3.969859) + mul(input_a, float4x4(float4(-0.035856757, -0.06817013, -0.18471625, -0.73033863), float4(0.077753864, 0.097871795, 0.19670647, -0.3498375), float4(-1.0399143, -3.8017354, -0.4186011, -1.4764334), float4(0.34179458, 2.3682005, 0.757651, 0.8526551)))) + mul(input_b, float4x4(float4(-2.1066976, 6.9736977, -1.2470212, -1.7055901), float4(-2.6102562, 2.377847, 0.67324764, -0.75044966), float4(0.08623841, 0.060396902, -0.1687638, 0.9640445), float4(4.040672, 0.270934, -4.6773195, -2.5334377)))) + (float4(0.1935029, -0.73336715, -3.3349328, -1.212692) * input_c.x)), (0.0).xxxx);
+    float4 layer_a_b = max((((float4(0.21330349, -0.02656817, -0.16447073, 1.1548687) + mul(input_a, float4x4(float4(0.02052927, -0.92279875, -0.089854464, -0.646571), float4(0.0017290202, 0.022043811, 0.070165455, 0.2522591), float4(-7.6991463, 0.83759165, -8.330793, -10.267181), float4(0.248631, 0.7580159, 0.82532406, 2.7728171)))) + mul(input_b, float4x4(float4(7.0652976, -2.2109723, 9.127621, -3.1035454), float4(1.6437272, 0.1328044, 0.10455265, -0.36131564), float4(-0.13505335, 1.3599367, -0.112846546, 2.5116642), float4(-0.5268424, -1.7431964, 0.059136257, 2.7708263)))) + (float4(-0.097574115, 2.234713, -0.41646186, -3.6041784) * input_c.x)), (0.0).xxxx);
+    float4 layer_a_c = max((((float4(0.23459977, 1.5284905, -0.33104283, -0.90826887) + mul(input_a, float4x4(float4(-1.4310397, 0.50795686, -1.1753677, 0.30261093), float4(0.24343121, -0.11405239, 0.2738383, 0.5665453), float4(0.67151386, -3.5867555, -0.616056, -1.4708247), float4(-3.8027723, -0.91791475, -2.1488001, -1.4649061)))) + mul(input_b, float4x4(float4(1.8115171, 2.7251132, 0.99894553, 3.4080665), float4(1.7032629, -0.6312258, 2.37076, -1.3196673), float4(1.8095148, 0.7401302, 0.91098684, -1.0051945), float4(2.2262223, -4.9366107, 3.2235591, 2.1454048)))) + (float4(-2.0792654, -1.3673354, -0.037428267, 0.11669109) * input_c.x)), (0.0).xxxx);
+    float layer_b_a = (1.0 / (1.0 + exp(min(-((((-0.050200883 + dot(float4(-0.33934435, 2.134865, -1.0937227, -0.56847894), layer_a_a)) + dot(float4(0.91362965, 0.58325267, 4.8532796, 2.4492927), layer_a_b)) + dot(float4(-2.5263038, 0.6588748, -0.92443925, 0.5552326), layer_a_c))), 80.0))));
+    return layer_b_a;
+}
+
+float peelnet_network(PeelnetAhead ahead)
+{
+    const float _e14 = peelnet_share(sqrt((2.0 * ahead.absorbance)), sqrt(ahead.total), ahead.before, ahead.own, ahead.previous, ahead.next, ahead.alpha, ahead.place, ahead.number);
+    return _e14;
+}
+
+PeelnetAhead ConstructPeelnetAhead(float arg0, float arg1, float arg2, float arg3, float arg4, float arg5, float arg6, float arg7, float arg8) {
+    PeelnetAhead ret = (PeelnetAhead)0;
+    ret.absorbance = arg0;
+    ret.total = arg1;
+    ret.before = arg2;
+    ret.own = arg3;
+    ret.previous = arg4;
+    ret.next = arg5;
+    ret.alpha = arg6;
+    ret.place = arg7;
+    ret.number = arg8;
+    return ret;
+}
+
+float peelnet_part(float own, float before_1, float previous, float next, float total, float number_1, PeelnetNearest nearest_2)
+{
+    const float _e7 = peelnet_inside(own);
+    float ahead_1 = (before_1 + _e7);
+    float scale = (1.0 / max(total, 1e-6));
+    PeelnetAhead known = ConstructPeelnetAhead(ahead_1, total, (before_1 * scale), (own * scale), (previous * scale), (next * scale), nearest_2.alpha, nearest_2.place, number_1);
+    const float _e22 = peelnet_network(known);
+    return exp(((-2.0 * ahead_1) * _e22));
+}
+
+float4 peelnet_over_black(PeelnetNearest nearest_3, float4 seen_1)
+{
+    float3 rest = ((seen_1.w > 0.0) ? (seen_1.xyz / (max(seen_1.w, 1.1754944e-38)).xxx) : nearest_3.color);
+    return float4(((nearest_3.alpha * nearest_3.color) + (nearest_3.left * rest)), nearest_3.coverage);
+}
+
+float3 peelnet_shares(float place_1)
+{
+    float3 off = (((place_1).xxx - float3(0.224, 0.485, 1.028)) * float3(6.3291135, 5.952381, 5.235602));
+    float3 bumps = exp(((-0.5 * off) * off));
+    return (bumps * (1.0 / ((bumps.x + bumps.y) + bumps.z)));
+}
+
+PeelnetStatistics ConstructPeelnetStatistics(float4 arg0, float4 arg1, float4 arg2, float4 arg3) {
+    PeelnetStatistics ret = (PeelnetStatistics)0;
+    ret.sum_a = arg0;
+    ret.sum_b = arg1;
+    ret.sum_c = arg2;
+    ret.absorbances = arg3;
+    return ret;
+}
+
+PeelnetStatistics peelnet_statistics(float alpha_3, float3 rgb_2, float zeta_3, float4 quantiles_2, float noise_2)
+{
+    const float _e5 = peelnet_absorbance(alpha_3);
+    float depth_5 = ((0.5 * zeta_3) + 0.5);
+    const float _e10 = peelnet_place_among(depth_5, quantiles_2);
+    const float4 _e11 = peelnet_record(_e5, rgb_2, depth_5, _e10, noise_2);
+    const float3 _e12 = peelnet_shares(_e10);
+    float3 shares_3 = (_e5 * _e12);
+    const PeelnetStatistics peelnetstatistics = ConstructPeelnetStatistics(float4((rgb_2 * shares_3.x), _e11.x), float4((rgb_2 * shares_3.y), _e11.y), float4((rgb_2 * shares_3.z), _e11.z), float4(shares_3, _e11.w));
+    return peelnetstatistics;
+}
+
+float4 peelnet_pixel(float4 sum_a, float4 sum_b, float4 sum_c, float4 absorbances, float4 quantiles_3, float noise_3)
+{
+    float3 b_5 = min(absorbances.xyz, (65504.0).xxx);
+    float4 all_ = float4(((sum_a.xyz + sum_b.xyz) + sum_c.xyz), ((b_5.x + b_5.y) + b_5.z));
+    const PeelnetNearest _e26 = peelnet_nearest(float4(sum_a.w, sum_b.w, sum_c.w, absorbances.w), all_, quantiles_3, noise_3);
+    const float3 _e28 = peelnet_shares(_e26.place);
+    const float4 _e32 = peelnet_behind(sum_a.xyz, b_5.x, _e28.x, _e26);
+    const float4 _e36 = peelnet_behind(sum_b.xyz, b_5.y, _e28.y, _e26);
+    const float4 _e40 = peelnet_behind(sum_c.xyz, b_5.z, _e28.z, _e26);
+    float two_2 = (_e32.w + _e36.w);
+    float total_1 = (two_2 + _e40.w);
+    const float _e51 = peelnet_part(_e32.w, 0.0, 0.0, _e36.w, total_1, 0.0, _e26);
+    const float _e58 = peelnet_part(_e36.w, _e32.w, _e32.w, _e40.w, total_1, 0.5, _e26);
+    const float _e65 = peelnet_part(_e40.w, two_2, _e36.w, 0.0, total_1, 1.0, _e26);
+    float4 seen_3 = (((_e32 * _e51) + (_e36 * _e58)) + (_e40 * _e65));
+    const float4 _e68 = peelnet_over_black(_e26, seen_3);
+    return _e68;
+}
+
+float4 peelnet_resolve(float4 sum_a_1, float4 sum_b_1, float4 sum_c_1, float4 absorbances_1, float4 quantiles_4, float noise_4, float3 background)
+{
+    const float4 _e7 = peelnet_pixel(sum_a_1, sum_b_1, sum_c_1, absorbances_1, quantiles_4, noise_4);
+    return float4((_e7.xyz + ((1.0 - _e7.w) * background)), _e7.w);
+}
+
+float peelnet_weight(float root_absorbance_1, float root_total_1, float share_before_1, float share_own_1, float share_previous_1, float share_next_1, float nearest_alpha_1, float nearest_place_1, float number_2)
+{
+    float root = clamp(root_absorbance_1, 0.0, 256.0);
+    const float _e39 = peelnet_share(clamp(root_absorbance_1, -13561.853, 13564.8545), clamp(root_total_1, -30128.404, 30134.768), clamp(share_before_1, -2667.907, 2668.264), clamp(share_own_1, -3112.036, 3112.7146), clamp(share_previous_1, -2008.2643, 2008.5392), clamp(share_next_1, -3296.4385, 3297.0293), clamp(nearest_alpha_1, -3215.6423, 3216.4802), clamp(nearest_place_1, -1974.1545, 1974.4336), clamp(number_2, -4064.0708, 4065.088));
+    return exp(((-(root) * root) * _e39));
+}

@@ -1,0 +1,41 @@
+// One pass, between its passes: the quantiles of each tile, of what is seen in the nine around it.
+// Loops: 2: three rows, and three columns.
+import package::helpers::one::stored;
+import package::learned::weight::{PeelnetTile, peelnet_quantiles, peelnet_tile_seen};
+
+// Width and height of the frame.
+@group(0) @binding(0) var<uniform> frame: vec4u;
+@group(0) @binding(1) var bins_a: texture_2d<f32>;
+@group(0) @binding(2) var bins_b: texture_2d<f32>;
+@group(0) @binding(3) var bins_c: texture_2d<f32>;
+@group(0) @binding(4) var bins_d: texture_2d<f32>;
+@group(0) @binding(5) var nearest: texture_2d<f32>;
+@group(0) @binding(6) var<storage, read_write> quantiles: array<u32>;
+
+@compute @workgroup_size(64)
+fn main(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) lane: u32) {
+    let count = (frame.xy + 7u) / 8u;
+    let index = (group.y * groups.x + group.x) * 64u + lane;
+    if index >= count.x * count.y {
+        return;
+    }
+    let tile = vec2i(vec2u(index % count.x, index / count.x));
+    var sum = PeelnetTile(vec4f(0.0), vec4f(0.0), vec4f(0.0), vec4f(0.0));
+    for (var y = -1; y <= 1; y++) {
+        for (var x = -1; x <= 1; x++) {
+            let at = vec2u(clamp(tile + vec2i(x, y), vec2i(0), vec2i(count) - 1));
+            let bins = PeelnetTile(
+                textureLoad(bins_a, at, 0),
+                textureLoad(bins_b, at, 0),
+                textureLoad(bins_c, at, 0),
+                textureLoad(bins_d, at, 0),
+            );
+            let seen = peelnet_tile_seen(bins, textureLoad(nearest, at, 0).x);
+            sum.a += seen.a;
+            sum.b += seen.b;
+            sum.c += seen.c;
+            sum.d += seen.d;
+        }
+    }
+    quantiles[index] = stored(peelnet_quantiles(sum));
+}

@@ -1,0 +1,79 @@
+//! `one` over several tiles of pixels: what its CPU reference, of a pixel alone, does not know.
+
+use peelnet_core::{
+    absorbance::{DepthWarp, absorbance},
+    fragment::Fragment,
+    methods::one::{self, Around, Design, Tiles, depth_of, formula, seen_behind_nearest},
+};
+use peelnet_scene::Material;
+use peelnet_tests::{HALF, draw, gpu, object, rectangle, scene, wall};
+
+const BACKGROUND: [f32; 3] = [0.25, 0.5, 0.75];
+
+const SIZE: [u32; 2] = [24, 16];
+
+/// Sums of five half floats, divided by what is left of them without the nearest fragment.
+const TOLERANCE: f32 = 32.0 * HALF;
+
+/// Where a value lies on the edge of two of the nearest fragment's steps, 32 bits may round it to the other one.
+const OTHER_STEPS: usize = 4;
+
+/// Five layers, two of which end in the middle of the frame: the pixel of the middle tiles sees other depths than those beside it, and all
+/// pixels are told what lies between.
+#[test]
+fn pixels_are_told_what_is_seen_around_them() {
+    let layer = |z, alpha, color| Fragment::new(z, alpha, color);
+    let walls = [
+        layer(1.0, 0.3, [0.9, 0.1, 0.2]),
+        layer(1.5, 0.4, [0.2, 0.3, 0.9]),
+        layer(4.0, 0.5, [0.2, 0.1, 0.7]),
+    ];
+    // In the left half of the frame.
+    let halves = [
+        layer(2.0, 0.6, [0.1, 0.8, 0.3]),
+        layer(2.5, 0.35, [0.8, 0.7, 0.1]),
+    ];
+    let material = |f: &Fragment| Material::unlit(f.color, f.alpha);
+    let whole = walls.iter().map(|f| wall(f.depth, material(f)));
+    let half = halves.iter().map(|f| {
+        let left = rectangle(
+            [-2.0 * f.depth, 0.0],
+            [-2.0 * f.depth, 2.0 * f.depth],
+            f.depth,
+        );
+        object(&left, material(f))
+    });
+    let scene = scene("five layers", BACKGROUND, whole.chain(half).collect());
+    let all = || walls.iter().chain(&halves).copied();
+    let warp = DepthWarp::new(1.0, 4.0).with_spans(all().map(|f| [f.depth.into(); 2]));
+    let fragments = |x: u32| -> Vec<Fragment> {
+        let is_left = x < SIZE[0] / 2;
+        all().filter(|f| is_left || walls.contains(f)).collect()
+    };
+    let seen = |x: u32| {
+        let points = fragments(x).into_iter();
+        let points = points.map(|f| (absorbance(f.alpha), depth_of(&warp, f.depth)));
+        seen_behind_nearest(&points.collect::<Vec<_>>())
+    };
+    let row = [4, 12, 20].map(seen);
+    let tiles = Tiles::new(3, &[row, row].concat());
+    assert_ne!(tiles.at([0, 0]), tiles.at([23, 0]));
+    for (method, design) in [("one", Design::ONE), ("one-wide", Design::WIDE)] {
+        let image = draw(&gpu(), &scene, method, SIZE);
+        let mut apart = Vec::new();
+        for y in 0..SIZE[1] {
+            for x in 0..SIZE[0] {
+                let around = Around::new(tiles.at([x, y]), [x, y]);
+                let want =
+                    one::composite(&fragments(x), BACKGROUND, &warp, design, around, formula);
+                let found = image.pixels[(y * SIZE[0] + x) as usize];
+                let errors = found.iter().zip(want).map(|(a, b)| (a - b).abs());
+                let error = errors.fold(0.0, f32::max);
+                if error.is_nan() || error > TOLERANCE {
+                    apart.push((x, y, error));
+                }
+            }
+        }
+        assert!(apart.len() <= OTHER_STEPS, "{method}: {apart:?}");
+    }
+}
