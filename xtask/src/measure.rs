@@ -13,6 +13,9 @@ const VALIDATION_SCENES: [&str; 3] = ["intersecting", "sixteen-050", "sixteen-ra
 /// One or two of each family: sixty frames of sixty settings would take an hour.
 const PATH_METHODS: &str = "abuffer,painter-object,painter-triangle,wboit-eq9,mboit4,mboit6,wavelet-3:bounds=pixel,bins-8,avboit,kbuffer-4,stochastic-16,deep-thesis,nmt,dfaoit,deep-anchored-medium,deep-small,deep-medium,deep-large,one,deep-one,deep-one-wide";
 
+/// What draws the geometry once, and what it is compared with.
+const ONE_PASS_METHODS: &str = "abuffer,painter-object:sort=off,wboit-eq7,wboit-eq8,wboit-eq9,wboit-eq10,wboit-inverse-power,mboit4,deep-anchored-small,deep-small,one,one:range=frame,one-wide,one-wide:range=frame,deep-one,deep-one:range=frame,deep-one-wide,deep-one-wide:range=frame";
+
 /// What is judged with a surface apart from all others.
 const APART_METHODS: &str = "abuffer,wboit-eq9,mboit4,mboit6,wavelet-3:bounds=pixel,bins-8,bins-16,avboit,kbuffer-4,slabs:keep=small,slabs:keep=medium,slabs,deep-anchored-medium,deep-small,deep-medium,deep-large,deep-medium:range=boxes,deep-medium:range=frame,one,one-wide,deep-one,deep-one-wide,deep-one:range=frame,deep-one-wide:range=frame";
 
@@ -24,6 +27,7 @@ const STEPS: &str = "
     stress | stress | stress.csv.xz stress.md
     held-out | bench <held-out> --size 512x384 --views 1 --frames 3 | results.json.xz table.md pareto.svg pareto-mean.svg
     validation | bench <validation> --size 512x384 --views 1 --frames 3 | results.json.xz table.md
+    one-pass | bench <held-out> --size 512x384 --views 1 --frames 5 --methods <one-pass> | results.json.xz table.md pareto-mean.svg
     apart-none | bench <apart none> --size 256x192 --views 1 --frames 0 --methods <apart> | table.md
     apart-near | bench <apart near> --size 256x192 --views 1 --frames 0 --methods <apart> | table.md
     apart-quarter | bench <apart quarter> --size 256x192 --views 1 --frames 0 --methods <apart> | table.md
@@ -64,6 +68,7 @@ fn filled(line: &str) -> Result<String, String> {
         .replace("<held-out>", &held_out()?.join(" "))
         .replace("<validation>", &VALIDATION_SCENES.map(scene_file).join(" "))
         .replace("<path>", PATH_METHODS)
+        .replace("<one-pass>", ONE_PASS_METHODS)
         .replace("<extract>", extract))
 }
 

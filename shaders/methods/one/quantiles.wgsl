@@ -9,8 +9,9 @@ import package::learned::weight::{PeelnetTile, peelnet_quantiles, peelnet_tile_s
 @group(0) @binding(2) var bins_b: texture_2d<f32>;
 @group(0) @binding(3) var bins_c: texture_2d<f32>;
 @group(0) @binding(4) var bins_d: texture_2d<f32>;
-@group(0) @binding(5) var nearest: texture_2d<f32>;
-@group(0) @binding(6) var<storage, read_write> quantiles: array<u32>;
+@group(0) @binding(5) var bins_e: texture_2d<f32>;
+@group(0) @binding(6) var nearest: texture_2d<f32>;
+@group(0) @binding(7) var<storage, read_write> quantiles: array<u32>;
 
 @compute @workgroup_size(64)
 fn main(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) lane: u32) {
@@ -28,7 +29,7 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: ve
                 textureLoad(bins_a, at, 0),
                 textureLoad(bins_b, at, 0),
                 textureLoad(bins_c, at, 0),
-                textureLoad(bins_d, at, 0),
+                vec4f(textureLoad(bins_d, at, 0).xy, textureLoad(bins_e, at, 0).xy),
             );
             let seen = peelnet_tile_seen(bins, textureLoad(nearest, at, 0).x);
             sum.a += seen.a;

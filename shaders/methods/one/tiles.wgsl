@@ -10,8 +10,10 @@ struct Tile {
     @location(0) a: vec4f,
     @location(1) b: vec4f,
     @location(2) c: vec4f,
-    @location(3) d: vec4f,
-    @location(4) nearest: f32,
+    // In two: four channels of 8 bits count as eight bytes of the 32 that a pass may write, two as two.
+    @location(3) d: vec2f,
+    @location(4) e: vec2f,
+    @location(5) nearest: f32,
 }
 
 @fragment
@@ -22,5 +24,5 @@ fn fragment_main(surface: Surface) -> Tile {
     let alpha = opacity(surface);
     let zeta = zeta_of(surface.depth_linear);
     let bins = peelnet_tile_bins(alpha, zeta);
-    return Tile(bins.a, bins.b, bins.c, bins.d, peelnet_tile_nearest(alpha, zeta));
+    return Tile(bins.a, bins.b, bins.c, bins.d.xy, bins.d.zw, peelnet_tile_nearest(alpha, zeta));
 }

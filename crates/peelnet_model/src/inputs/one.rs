@@ -158,7 +158,7 @@ const BEFORE: &str = concat!(
     " Where boxes show that nothing lies between two depths, use peelnet_cut(zeta, gaps) for zeta: it leaves up to two such gaps out. \
     quantiles says where among the depths around the pixel most is seen: peelnet_even() where nothing is known but near and far, with several \
     times the error. To know it, draw depth and opacity alone at an eighth of the width and the height, the middles of its pixels 8 x + 4 and \
-    8 y + 4 of the frame: peelnet_tile_bins into four rgba8unorm targets that add and peelnet_tile_nearest into one r16float target that keeps \
+    8 y + 4 of the frame: peelnet_tile_bins into 8-bit targets that add (three of four channels and two of two stay within 32 bytes a sample) and peelnet_tile_nearest into one r16float target that keeps \
     the most, cleared to 0 and to -65504; then sum peelnet_tile_seen of the nine pixels around each, group by group of four bins, and keep \
     peelnet_quantiles of the sums. Read it with linear interpolation. noise is any number in 0 .. 1 that is the same for all of a pixel: \
     it hides the steps of what is kept of the nearest fragment; 0.5 where that does not matter."

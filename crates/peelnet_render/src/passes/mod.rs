@@ -342,6 +342,16 @@ impl<'a> Passes<'a> {
         modules.into_iter().filter(|m| !m.1.is_empty()).collect()
     }
 
+    /// Bytes of a sample that a pass writes, as WebGPU counts them.
+    fn sample_bytes(&self, pass: &Pass) -> u32 {
+        let written = pass.writes.iter().map(|w| &self.resources[w.0]);
+        let bytes = written.filter_map(|resource| match resource {
+            Resource::Target(target) => target.format().target_pixel_byte_cost(),
+            _ => None,
+        });
+        bytes.sum()
+    }
+
     /// Allocates what the passes need and makes their pipelines.
     ///
     /// # Errors
@@ -426,6 +436,13 @@ impl<'a> Passes<'a> {
                 _ => {}
             }
         }
+        gpu.check_limit(
+            &format!("{}: pass {}", b.spec, pass.label),
+            u64::from(self.sample_bytes(pass)),
+            u64::from(gpu.limits.max_color_attachment_bytes_per_sample),
+            "bytes a sample",
+            "choose a method that keeps less of a pixel",
+        )?;
         let work = match pass.draws {
             Draws::Threads(threads) => {
                 let kernel = Kernel::link(gpu, shader, &features, &modules, &entries)?;

@@ -88,8 +88,15 @@ fn passes(p: &mut Passes<'_>) {
     let mut quantiles = None;
     if !is_framed {
         let small = |target: Target| target.every(TILE);
-        let bins = ["bins_a", "bins_b", "bins_c", "bins_d"];
-        let bins = bins.map(|name| small(Target::half(name, 4, Blend::AddBytes)));
+        // Sixteen bins: four channels of 8 bits count as eight bytes of the 32 that a pass may write, two as two.
+        let bins = [
+            ("bins_a", 4),
+            ("bins_b", 4),
+            ("bins_c", 4),
+            ("bins_d", 2),
+            ("bins_e", 2),
+        ];
+        let bins = bins.map(|(name, n)| small(Target::half(name, n, Blend::AddBytes)));
         let nearest = small(Target::half("nearest", 1, Blend::Max));
         let tiles = p.targets(bins.into_iter().chain([nearest]));
         let [columns, rows] = p.on.size.map(|n| u64::from(n.div_ceil(TILE)));
