@@ -55,8 +55,11 @@ fn pixels_are_told_what_is_seen_around_them() {
         let points = points.map(|f| (absorbance(f.alpha), depth_of(&warp, f.depth)));
         seen_behind_nearest(&points.collect::<Vec<_>>())
     };
-    let row = [4, 12, 20].map(seen);
-    let tiles = Tiles::new(3, &[row, row].concat());
+    let middles = [0, 1, 2].map(|k| (k, seen(8 * k + 4)));
+    let tiles = [0, 1]
+        .into_iter()
+        .flat_map(|y| middles.map(|(x, seen)| ([x, y], seen)));
+    let tiles = Tiles::new(SIZE, &tiles.collect());
     assert_ne!(tiles.at([0, 0]), tiles.at([23, 0]));
     for (method, design) in [("one", Design::ONE), ("one-wide", Design::WIDE)] {
         let image = draw(&gpu(), &scene, method, SIZE);

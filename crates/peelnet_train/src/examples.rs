@@ -1,5 +1,7 @@
 //! From views of a dataset to the examples of a recipe.
 
+use std::collections::BTreeMap;
+
 use peelnet_core::absorbance::{DepthWarp, absorbance};
 use peelnet_core::files::shown;
 use peelnet_core::methods::known::KnownFragment;
@@ -54,28 +56,28 @@ impl View<'_> {
 
     /// The quantiles of its tiles, of each the pixel of the dataset that is nearest to the one that a renderer looks at.
     fn tiles(self, warp: &DepthWarp) -> Result<Tiles, TrainError> {
-        let [columns, rows] = [self.part.width, self.part.height].map(|n| n.div_ceil(TILE).max(1));
-        let none = (u32::MAX, [0.0; TILE_BINS]);
-        let mut seen = vec![none; (columns * rows) as usize];
+        let mut best: BTreeMap<[u32; 2], (u32, [f64; TILE_BINS])> = BTreeMap::new();
         for batch in self.batches() {
             let batch = batch?;
             for pixel in batch.pixels() {
                 let (x, y) = (batch.x[pixel.start], batch.y[pixel.start]);
                 let from_middle = |n: u32| (n % TILE).abs_diff(TILE / 2).pow(2);
                 let distance = from_middle(x) + from_middle(y);
-                let tile = y / TILE * columns + x / TILE;
-                let found = seen.get_mut(tile as usize).filter(|best| distance < best.0);
-                if let Some(best) = found {
+                let tile = [x / TILE, y / TILE];
+                if best.get(&tile).is_none_or(|best| distance < best.0) {
                     let rows = batch.linear_depth[pixel.clone()].iter();
                     let rows = rows.zip(&batch.one_minus_alpha[pixel]);
                     let fragments = rows.map(|(&z, &t)| (absorbance(1.0 - t), depth_of(warp, z)));
                     let fragments: Vec<_> = fragments.collect();
-                    *best = (distance, seen_behind_nearest(&fragments));
+                    best.insert(tile, (distance, seen_behind_nearest(&fragments)));
                 }
             }
         }
-        let seen: Vec<_> = seen.into_iter().map(|(_, seen)| seen).collect();
-        Ok(Tiles::new(columns, &seen))
+        let seen = best.into_iter().map(|(tile, (_, seen))| (tile, seen));
+        Ok(Tiles::new(
+            [self.part.width, self.part.height],
+            &seen.collect(),
+        ))
     }
 
     /// Batches of whole pixels.

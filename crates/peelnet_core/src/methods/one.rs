@@ -17,6 +17,7 @@ use crate::{
     fragment::Fragment,
     statistics::{NEAREST_CODE, SumPrecision},
 };
+use std::collections::BTreeMap;
 
 /// Pixels from one that is looked at to the next, both ways.
 pub const TILE: u32 = 8;
@@ -123,47 +124,50 @@ pub fn seen_behind_nearest(fragments: &[(f64, f64)]) -> [f64; TILE_BINS] {
 /// The quantiles of a frame, by tiles of [`TILE`] × [`TILE`] pixels.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tiles {
-    columns: u32,
-    quantiles: Vec<Quantiles>,
+    /// The last column and the last row.
+    last: [u32; 2],
+    /// Of tiles that have one beside them in which anything is seen.
+    quantiles: BTreeMap<[u32; 2], Quantiles>,
 }
 
 impl Tiles {
-    /// Of what is seen in a pixel of every tile ([`seen_behind_nearest`]), row by row: each tile's are those of the nine around it.
-    ///
-    /// # Panics
-    /// Without a tile.
-    pub fn new(columns: u32, seen: &[[f64; TILE_BINS]]) -> Self {
-        let rows = seen.len() as u32 / columns;
-        let around = |x: u32, y: u32| {
+    /// Of what is seen in a pixel of some tiles of a frame ([`seen_behind_nearest`]): each tile's quantiles are those of the nine around it.
+    pub fn new(frame: [u32; 2], seen: &BTreeMap<[u32; 2], [f64; TILE_BINS]>) -> Self {
+        let last = frame.map(|n| n.div_ceil(TILE).max(1) - 1);
+        let nine = |tile: [u32; 2]| {
+            (0..9).map(move |k| {
+                let beside =
+                    |axis: usize, by: u32| (tile[axis] + by).saturating_sub(1).min(last[axis]);
+                [beside(0, k % 3), beside(1, k / 3)]
+            })
+        };
+        let around = |tile: [u32; 2]| {
             let mut sum = [PRIOR / TILE_BINS as f64; TILE_BINS];
-            for (dx, dy) in (0..9).map(|k| (k % 3, k / 3)) {
-                let [x, y] = [(x + dx, columns), (y + dy, rows)]
-                    .map(|(k, n)| k.saturating_sub(1).min(n - 1));
-                let one = seen[(y * columns + x) as usize];
+            for one in nine(tile).filter_map(|beside| seen.get(&beside)) {
                 sum.iter_mut().zip(one).for_each(|(sum, bin)| *sum += bin);
             }
             Quantiles::of_seen(sum)
         };
-        let places = (0..seen.len() as u32).map(|k| (k % columns, k / columns));
+        let tiles = seen.keys().flat_map(|&tile| nine(tile));
         Self {
-            columns,
-            quantiles: places.map(|(x, y)| around(x, y)).collect(),
+            last,
+            quantiles: tiles.map(|tile| (tile, around(tile))).collect(),
         }
     }
 
     /// Of a pixel, linear between the middles of tiles.
-    pub fn at(&self, [x, y]: [u32; 2]) -> Quantiles {
-        let last = [self.columns, self.quantiles.len() as u32 / self.columns].map(|n| n - 1);
-        let place = [x, y].map(|k| (f64::from(k) + 0.5) / f64::from(TILE) - 0.5);
+    pub fn at(&self, pixel: [u32; 2]) -> Quantiles {
+        let place = pixel.map(|k| (f64::from(k) + 0.5) / f64::from(TILE) - 0.5);
+        let nothing = Quantiles::of_seen([1.0; TILE_BINS]);
         let mut all = [0.0; 4];
         for corner in 0..4u32 {
             let mut weight = 1.0;
             let tile = [0, 1].map(|axis| {
                 let (low, far) = (place[axis].floor(), f64::from(corner >> axis & 1));
                 weight *= 1.0 - (place[axis] - low - far).abs();
-                (low + far).clamp(0.0, f64::from(last[axis])) as u32
+                (low + far).clamp(0.0, f64::from(self.last[axis])) as u32
             });
-            let Quantiles(of) = self.quantiles[(tile[1] * self.columns + tile[0]) as usize];
+            let Quantiles(of) = self.quantiles.get(&tile).unwrap_or(&nothing);
             all.iter_mut()
                 .zip(of)
                 .for_each(|(sum, q)| *sum += weight * q);
@@ -504,4 +508,146 @@ pub fn composite(
 /// A linear depth on the frame's scale without gaps, 0 … 1.
 pub fn depth_of(warp: &DepthWarp, depth: f32) -> f64 {
     0.5 * warp.cut(depth.into()) + 0.5
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{fragment::worked_example, methods::over};
+
+    const DESIGNS: [Design; 2] = [Design::ONE, Design::WIDE];
+
+    fn warp() -> DepthWarp {
+        DepthWarp::new(1.0, 8.0)
+    }
+
+    fn of(fragments: &[Fragment], design: Design) -> [f32; 3] {
+        composite(fragments, [0.2; 3], &warp(), design, Around::NONE, formula)
+    }
+
+    /// Whatever the noise, the mean is the fragment's own colour.
+    #[test]
+    fn one_layer_is_exact() {
+        let (background, warp) = ([0.2, 0.7, 0.4], warp());
+        for (alpha, color) in [
+            (0.004, [0.9, 0.1, 0.0]),
+            (0.5, [3.0, 0.0, 0.2]),
+            (1.0, [1.0; 3]),
+        ] {
+            let f = [Fragment::new(3.0, alpha, color)];
+            let want = over::composite(&f, background);
+            for noise in [0.0, 0.3, 0.99] {
+                let around = Around {
+                    noise,
+                    ..Around::NONE
+                };
+                let found = composite(&f, background, &warp, Design::ONE, around, formula);
+                let apart = found.iter().zip(want).map(|(a, b)| (a - b).abs());
+                // Opacity 1 counts as an absorbance of 16; the rest are roundings of 32 bits.
+                assert!(
+                    apart.fold(0.0, f32::max) < 1e-6,
+                    "{alpha} {noise}: {found:?}"
+                );
+            }
+        }
+    }
+
+    /// Two layers far apart: the nearest one's colour is off by a step of its record at most, and so is what it leaves to the other.
+    #[test]
+    fn two_layers_are_exact_but_for_a_step() {
+        let f = [
+            Fragment::new(1.5, 0.4, [0.9, 0.2, 0.1]),
+            Fragment::new(6.0, 0.7, [0.1, 0.3, 0.8]),
+        ];
+        let want = over::composite(&f, [0.2; 3]);
+        for design in DESIGNS {
+            for (found, want) in of(&f, design).into_iter().zip(want) {
+                // Half a step at 0.9 is 0.019 of colour; no more of it is seen than the opacity.
+                assert!(
+                    (found - want).abs() < 0.4 * 0.019 + 1e-4,
+                    "{found} for {want}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn places_rise_from_0_to_1_and_shares_add_up() {
+        for quantiles in [
+            Quantiles::EVEN,
+            Quantiles([0.0, 0.2, 0.2, 0.9]),
+            Quantiles([1.0; 4]),
+        ] {
+            let places = (0..=100).map(|k| quantiles.place(f64::from(k) / 100.0));
+            let places: Vec<f64> = places.collect();
+            assert!(
+                places[0] == 0.0 && (places[100] - 1.0).abs() < 1e-12,
+                "{quantiles:?}"
+            );
+            assert!(places.windows(2).all(|w| w[1] >= w[0]), "{quantiles:?}");
+            for design in DESIGNS {
+                for &place in &places {
+                    let sum: f64 = design.shares(place).iter().sum();
+                    assert!((sum - 1.0).abs() < 1e-12);
+                }
+            }
+        }
+        assert!((Quantiles::EVEN.place(0.5) - 0.5).abs() < 1e-12);
+    }
+
+    /// Behind a nearest fragment of absorbance 1 lies one of 2: what is seen of it is `e^−1 (1 − e^−2)`, in its own two bins.
+    #[test]
+    fn what_is_seen_behind_the_nearest_is_in_its_bins() {
+        let seen = seen_behind_nearest(&[(2.0, 0.7), (1.0, 0.1)]);
+        let want = (-1.0f64).exp() * -(-2.0f64).exp_m1();
+        // Levels of 1/64, and of the nearest fragment's opacity.
+        assert!((seen.iter().sum::<f64>() - want).abs() < 0.01, "{seen:?}");
+        assert!((seen[10] + seen[11]) / want > 0.99, "{seen:?}");
+        assert_eq!(seen_behind_nearest(&[(1.0, 0.4)]), [0.0; TILE_BINS]);
+    }
+
+    /// Where all tiles see the same, so do all pixels; beside a tile that sees nothing the quantiles are those of what is seen.
+    #[test]
+    fn tiles_see_what_is_around_them() {
+        let seen = seen_behind_nearest(&[(1.0, 0.1), (1.0, 0.3), (1.0, 0.5)]);
+        let frame = |columns, seen: &[[f64; TILE_BINS]]| {
+            let places = (0..).map(|k| [k % columns, k / columns]);
+            let rows = seen.len() as u32 / columns;
+            let tiles = places.zip(seen.iter().copied()).collect();
+            Tiles::new([columns * TILE, rows * TILE], &tiles)
+        };
+        let tiles = frame(3, &[seen; 6]);
+        assert_eq!(tiles.at([0, 0]), tiles.at([23, 15]));
+        let Quantiles(q) = tiles.at([12, 8]);
+        assert!(
+            q[0] > 0.2 && q[3] < 0.6 && q[0] < q[1] && q[1] < q[2],
+            "{q:?}"
+        );
+        let nothing = [0.0; TILE_BINS];
+        let one = frame(3, &[nothing, seen, nothing]);
+        assert_eq!(one.at([0, 3]), one.at([12, 3]));
+        let apart = frame(4, &[seen, nothing, nothing, nothing]);
+        let Quantiles(even) = apart.at([31, 0]);
+        for (found, share) in even.into_iter().zip(SHARES) {
+            assert!((found - share).abs() < 0.5 / 255.0 + 1e-9, "{even:?}");
+        }
+    }
+
+    /// What is seen of all fragments is the pixel's coverage.
+    #[test]
+    fn transmittances_add_up() {
+        let fragments = worked_example();
+        let places = fragments.map(|f| (absorbance(f.alpha), depth_of(&warp(), f.depth)));
+        for design in DESIGNS {
+            let t = transmittances(&places, design, Around::NONE, SumPrecision::Exact, formula);
+            assert_eq!(t[0], 1.0);
+            let seen = fragments
+                .iter()
+                .zip(&t)
+                .map(|(f, t)| f64::from(f.alpha) * t);
+            let coverage = 1.0 - places.iter().map(|(b, _)| (-b).exp()).product::<f64>();
+            // The record's opacity is off by half a step.
+            assert!((seen.sum::<f64>() - coverage).abs() < 0.03, "{t:?}");
+        }
+    }
 }
