@@ -3,7 +3,7 @@
 import { NormalBlending, PassNode, RenderTarget, RendererUtils, Vector2, Vector4 } from 'three/webgpu';
 import { renderGroup, uniform } from 'three/tsl';
 import { DepthRange } from './depth-range.js';
-import { deviceProblem, watchDevice } from './device.js';
+import { blendAlike, deviceProblem, drawnPasses, watchDevice } from './device.js';
 import { modelProblem } from './model.js';
 import { releasePasses } from './release.js';
 import { Stages } from './stages.js';
@@ -22,6 +22,21 @@ export function isOrderIndependent( material ) {
 
 	return material.transparent === true && material.blending === NormalBlending
 		&& ! ( material.transmission > 0 ) && material.transmissionNode?.isNode !== true && material.backdropNode?.isNode !== true;
+
+}
+
+// Draws a full-screen quad between passes, whose settings it leaves.
+function drawQuad( renderer, quad ) {
+
+	const { opaque } = renderer;
+	const draw = renderer.getRenderObjectFunction();
+
+	renderer.setRenderObjectFunction( null );
+	renderer.setMRT( null );
+	renderer.opaque = true;
+	quad.render( renderer );
+	renderer.opaque = opaque;
+	renderer.setRenderObjectFunction( draw );
 
 }
 
@@ -83,7 +98,7 @@ export class PeelnetPassNode extends PassNode {
 
 	}
 
-	/** Where the slabs of depth come from: each pixel's own range, at one more pass, or the frame's. */
+	/** Where depths are told apart: in each pixel's own range or surroundings, at one more pass, or in the frame's. */
 	get range() {
 
 		return this._range;
@@ -183,7 +198,7 @@ export class PeelnetPassNode extends PassNode {
 
 		if ( problem !== null ) return this._fail( problem );
 
-		this._stages = new Stages( this._model, this._range, {
+		this._stages = new Stages( this._model, drawnPasses( renderer, this._model, this._range ), {
 			isGlsl: renderer.backend.isWebGPUBackend !== true,
 			depthTexture: this.renderTarget.depthTexture,
 			below: this.renderTarget.texture,
@@ -262,6 +277,7 @@ export class PeelnetPassNode extends PassNode {
 		const { sortObjects, contextNode, lighting: rendererLighting } = renderer;
 		const lighting = this.lighting ?? rendererLighting;
 		const isLit = lighting.enabled;
+		const endBlending = blendAlike( renderer );
 
 		if ( this._layers !== null ) camera.layers.mask = this._layers.mask;
 		if ( this.contextNode !== null ) renderer.contextNode = this._getContextNode( renderer );
@@ -276,15 +292,27 @@ export class PeelnetPassNode extends PassNode {
 		renderer.opaque = renderer.sortObjects = false;
 		renderer.transparent = true;
 
-		for ( const { target, node, shaded } of this._stages.passes ) {
+		for ( const { target, node, shaded, depth, then } of this._stages.passes ) {
+
+			renderer.setRenderTarget( target );
+
+			if ( depth !== undefined ) drawQuad( renderer, depth );
 
 			// Passes without colour need no light.
 			lighting.enabled = isLit && shaded;
-			renderer.setRenderTarget( target );
 			renderer.setMRT( node );
 			renderer.render( scene, camera );
 
+			if ( then !== undefined ) {
+
+				renderer.setRenderTarget( then.target );
+				drawQuad( renderer, then.quad );
+
+			}
+
 		}
+
+		endBlending();
 
 		lighting.enabled = isLit;
 		renderer.lighting = rendererLighting;
@@ -293,11 +321,8 @@ export class PeelnetPassNode extends PassNode {
 		RendererUtils.restoreSceneState( scene, _sceneState );
 		camera.layers.mask = mask;
 
-		renderer.setRenderObjectFunction( null );
-		renderer.setMRT( null );
-		renderer.opaque = true;
 		renderer.setRenderTarget( this._finished );
-		this._stages.quad.render( renderer );
+		drawQuad( renderer, this._stages.quad );
 
 	}
 

@@ -53,7 +53,7 @@ for ( const backend of [ 'webgpu', 'webgl2' ] ) {
 
 		test( 'two cards are within one step of the exact image, with every model', async () => {
 
-			const models = [ 'small', 'medium', 'large', 'anchored-small', 'anchored-medium' ];
+			const models = [ 'small', 'medium', 'large', 'anchored-small', 'anchored-medium', 'one' ];
 			const result = await run( 'compared', backend, { scene: 'twoCards', models, ranges: [ 'pixel', 'frame' ] } );
 
 			assert.equal( result.layers, 2 );
@@ -69,7 +69,7 @@ for ( const backend of [ 'webgpu', 'webgl2' ] ) {
 
 				test( `${ scene } objects, ${ camera }: a third of the error of weighted OIT and half of sorting's`, async () => {
 
-					const models = [ 'small', 'medium', 'large' ];
+					const models = [ 'small', 'medium', 'large', 'one' ];
 					const result = await run( 'compared', backend, { scene, camera, models, ranges: [ 'pixel', 'frame' ] } );
 
 					assert.deepEqual( result.problems, [] );
@@ -97,7 +97,7 @@ for ( const backend of [ 'webgpu', 'webgl2' ] ) {
 
 		test( 'the four fragments of the exports have the colour that the exports name', async () => {
 
-			for ( const name of [ 'small', 'medium', 'large', 'anchored-small', 'anchored-medium' ] ) {
+			for ( const name of [ 'small', 'medium', 'large', 'anchored-small', 'anchored-medium', 'one' ] ) {
 
 				const { self_test: { pixel } } = JSON.parse( readFileSync( join( PACKAGE, '../../models', name, 'model.json' ), 'utf8' ) );
 				const color = await run( 'fourFragments', backend, { name, pixel } );
@@ -223,7 +223,7 @@ for ( const backend of [ 'webgpu', 'webgl2' ] ) {
 			const expected = {
 				none: /no peelnet export/, 'no model': /no peelnet export/, version: /format version 2.*reads version 1/, recipe: /reads "front"/, format: /unknown format, blend or clear/,
 				blend: /unknown format, blend or clear/, name: /unknown format, blend or clear/, text: /no WGSL text/, range: /neither "pixel" nor "frame"/, multisampling: /Multisampling is not supported/, depth: /needs a depth buffer/,
-				...( backend === 'webgpu' ? { compatibility: /compatibility mode/, bytes: /24 bytes a sample.*has 16/ } : { glsl: /no GLSL text/, 'indexed blends': /OES_draw_buffers_indexed/ } )
+				...( backend === 'webgpu' ? { compatibility: /compatibility mode/, bytes: /8 bytes a sample.*has 4/ } : { glsl: /no GLSL text/ } )
 			};
 
 			for ( const [ key, message ] of Object.entries( expected ) ) {
@@ -233,6 +233,22 @@ for ( const backend of [ 'webgpu', 'webgl2' ] ) {
 				assert.equal( result[ key ].largest, SAME, key );
 
 			}
+
+		} );
+
+		test( 'passes that a device cannot blend or hold at once are drawn in parts', async () => {
+
+			const result = await run( 'parts', backend );
+
+			for ( const [ model, { passes, problems, rmse } ] of Object.entries( result ) ) {
+
+				console.log( `    ${ model }: ${ passes } passes, ${ rmse.toFixed( 3 ) }/255` );
+				assert.deepEqual( problems, [] );
+				assert.ok( rmse <= REORDERED, model );
+
+			}
+
+			assert.deepEqual( result.one.passes, [ 2, 3 ] );
 
 		} );
 
