@@ -26,13 +26,14 @@ export function isOrderIndependent( material ) {
 }
 
 // Draws a full-screen quad between passes, whose settings it leaves.
-function drawQuad( renderer, quad ) {
+function drawQuad( renderer, { target, quad } ) {
 
 	const { opaque } = renderer;
 	const draw = renderer.getRenderObjectFunction();
 
 	renderer.setRenderObjectFunction( null );
 	renderer.setMRT( null );
+	renderer.setRenderTarget( target );
 	renderer.opaque = true;
 	quad.render( renderer );
 	renderer.opaque = opaque;
@@ -292,23 +293,17 @@ export class PeelnetPassNode extends PassNode {
 		renderer.opaque = renderer.sortObjects = false;
 		renderer.transparent = true;
 
-		for ( const { target, node, shaded, depth, then } of this._stages.passes ) {
+		for ( const { first, target, node, shaded, then } of this._stages.passes ) {
 
-			renderer.setRenderTarget( target );
-
-			if ( depth !== undefined ) drawQuad( renderer, depth );
+			if ( first !== undefined ) drawQuad( renderer, first );
 
 			// Passes without colour need no light.
 			lighting.enabled = isLit && shaded;
+			renderer.setRenderTarget( target );
 			renderer.setMRT( node );
 			renderer.render( scene, camera );
 
-			if ( then !== undefined ) {
-
-				renderer.setRenderTarget( then.target );
-				drawQuad( renderer, then.quad );
-
-			}
+			if ( then !== undefined ) drawQuad( renderer, then );
 
 		}
 
@@ -321,8 +316,7 @@ export class PeelnetPassNode extends PassNode {
 		RendererUtils.restoreSceneState( scene, _sceneState );
 		camera.layers.mask = mask;
 
-		renderer.setRenderTarget( this._finished );
-		drawQuad( renderer, this._stages.quad );
+		drawQuad( renderer, { target: this._finished, quad: this._stages.quad } );
 
 	}
 

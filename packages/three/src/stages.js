@@ -1,7 +1,7 @@
 // A model as three.js draws it: a render target and an MRT node for every pass, and a full-screen material that resolves.
 
 import {
-	AddEquation, AlwaysDepth, BlendMode, CustomBlending, FloatType, HalfFloatType, MaxEquation, NearestFilter, NoBlending, NodeMaterial,
+	AddEquation, AlwaysDepth, BlendMode, CustomBlending, DepthTexture, FloatType, HalfFloatType, MaxEquation, NearestFilter, NoBlending, NodeMaterial,
 	LinearFilter, OneFactor, OneMinusSrcAlphaFactor, OneMinusSrcColorFactor, QuadMesh, RGBAFormat, RGFormat, RedFormat, RenderTarget, UnsignedByteType, Vector4, ZeroFactor
 } from 'three/webgpu';
 import { Fn, code, diffuseColor, glslFn, ivec2, mat4, mrt, output, positionView, renderGroup, screenCoordinate, screenSize, screenUV, texture, textureLoad, uniform, vec4, wgslFn } from 'three/tsl';
@@ -32,9 +32,9 @@ function blendMode( { color, alpha } ) {
 // A target of a description. Names are prefixed: three.js gives meaning to some, such as "depth".
 const attachmentName = ( target ) => `peelnet_${ target.name }`;
 
-function renderTarget( targets, options ) {
+function renderTarget( targets, depthTexture, filter = NearestFilter ) {
 
-	const result = new RenderTarget( 1, 1, { count: targets.length, samples: 0, minFilter: NearestFilter, magFilter: NearestFilter, generateMipmaps: false, ...options } );
+	const result = new RenderTarget( 1, 1, { count: targets.length, samples: 0, minFilter: filter, magFilter: filter, generateMipmaps: false, depthBuffer: depthTexture !== null, depthTexture } );
 
 	targets.forEach( ( target, i ) => {
 
@@ -48,7 +48,6 @@ function renderTarget( targets, options ) {
 
 }
 
-// A full-screen material between passes.
 function fullScreen( name, properties ) {
 
 	const material = new NodeMaterial();
@@ -83,16 +82,17 @@ export class Stages {
 		const texel = ivec2( pixel );
 		const viewport = uniform( new Vector4() ).setGroup( renderGroup );
 
-		// What earlier passes wrote at the pixel, by the names of the description, and the textures that the small one did.
+		// What earlier passes wrote at the pixel, by the names of the description, and the small textures.
 		const written = new Map();
 		const small = new Map();
+		const smallDepth = new DepthTexture( 1, 1, depthTexture.type );
 
 		const texels = ( names ) => names.filter( ( name ) => written.has( name ) ).map( ( name ) => written.get( name ) );
 
 		this.passes = passes.map( ( pass ) => {
 
 			const isSmall = pass.name === around?.pass.name;
-			const target = renderTarget( pass.targets );
+			const target = renderTarget( pass.targets, isSmall ? smallDepth : depthTexture );
 			const node = mrt( {} );
 			let columns;
 
@@ -113,10 +113,16 @@ export class Stages {
 
 			if ( isSmall ) {
 
-				pass.targets.forEach( ( { name }, i ) => small.set( name, target.textures[ i ] ) );
+				if ( small.size === 0 ) {
 
-				// Opaque objects hide what they hide of the frame.
-				result.depth = fullScreen( 'depth', { fragmentNode: vec4( 0 ), depthNode: textureLoad( depthTexture, ivec2( screenUV.mul( viewport.zw ).add( viewport.xy ) ) ).x, colorWrite: false, depthTest: true, depthWrite: true, depthFunc: AlwaysDepth } );
+					// Opaque objects hide here what they hide in the frame.
+					const depthNode = textureLoad( depthTexture, ivec2( screenUV.mul( viewport.zw ).add( viewport.xy ) ) ).x;
+
+					result.first = { target: renderTarget( [ around ], smallDepth ), quad: fullScreen( 'depth', { fragmentNode: vec4( 0 ), depthNode, depthTest: true, depthWrite: true, depthFunc: AlwaysDepth } ) };
+
+				}
+
+				pass.targets.forEach( ( { name }, i ) => small.set( name, target.textures[ i ] ) );
 
 				if ( small.size === around.pass.targets.length ) {
 
@@ -131,14 +137,13 @@ export class Stages {
 
 					}
 
-					result.then = { target: renderTarget( [ around ], { depthBuffer: false, minFilter: LinearFilter, magFilter: LinearFilter } ), quad: fullScreen( 'around', { fragmentNode: native( aroundText( model, isGlsl ) )( sum ) } ) };
+					result.then = { target: renderTarget( [ around ], null, LinearFilter ), quad: fullScreen( 'around', { fragmentNode: native( aroundText( model, isGlsl ) )( sum ) } ) };
 					written.set( around.name, texture( result.then.target.texture, pixel.sub( viewport.xy ).div( viewport.zw ) ) );
 
 				}
 
 			} else {
 
-				target.depthTexture = depthTexture;
 				pass.targets.forEach( ( { name }, i ) => written.set( name, textureLoad( target.textures[ i ], texel ) ) );
 
 			}
@@ -157,11 +162,11 @@ export class Stages {
 
 		this._viewport.copy( viewport );
 
-		for ( const { target, every, then } of this.passes ) {
+		for ( const { first, target, every, then } of this.passes ) {
 
 			if ( every > 1 ) {
 
-				for ( const small of [ target, then?.target ] ) small?.setSize( Math.ceil( viewport.z / every ), Math.ceil( viewport.w / every ) );
+				for ( const small of [ first?.target, target, then?.target ] ) small?.setSize( Math.ceil( viewport.z / every ), Math.ceil( viewport.w / every ) );
 
 				continue;
 
@@ -178,12 +183,12 @@ export class Stages {
 
 	dispose() {
 
-		for ( const { target, every, depth, then } of this.passes ) {
+		for ( const { first, target, every, then } of this.passes ) {
 
 			// The depth texture belongs to the opaque pass.
 			if ( every === 1 ) target.depthTexture = null;
 
-			for ( const made of [ target, depth?.material, then?.target, then?.quad.material ] ) made?.dispose();
+			for ( const made of [ target, first?.target, first?.quad.material, then?.target, then?.quad.material ] ) made?.dispose();
 
 		}
 
