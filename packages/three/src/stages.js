@@ -70,6 +70,25 @@ const straightColor = /*@__PURE__*/ Fn( ( builder ) => {
 
 } );
 
+// Sums over a texel of a full-screen pass and the eight around it.
+function sumAround( textures, add ) {
+
+	const texel = ivec2( screenCoordinate.xy );
+	const last = ivec2( screenSize ).sub( 1 );
+	let sum = mat4( vec4( 0 ), vec4( 0 ), vec4( 0 ), vec4( 0 ) );
+
+	for ( const x of [ - 1, 0, 1 ] ) for ( const y of [ - 1, 0, 1 ] ) {
+
+		const at = texel.add( ivec2( x, y ) ).clamp( ivec2( 0 ), last ).toVar();
+
+		sum = add( sum, ...textures.map( ( texture ) => textureLoad( texture, at ) ) ).toVar();
+
+	}
+
+	return sum;
+
+}
+
 /** The passes of one model, ready to draw. `span` is the uniform of the frame's range of depth. */
 export class Stages {
 
@@ -126,18 +145,9 @@ export class Stages {
 
 				if ( small.size === around.pass.targets.length ) {
 
-					let sum = mat4( vec4( 0 ), vec4( 0 ), vec4( 0 ), vec4( 0 ) );
-					const add = native( sumText( model, isGlsl ) );
+					const textures = around.pass.targets.map( ( { name } ) => small.get( name ) );
 
-					for ( const x of [ - 1, 0, 1 ] ) for ( const y of [ - 1, 0, 1 ] ) {
-
-						const at = texel.add( ivec2( x, y ) ).clamp( ivec2( 0 ), ivec2( screenSize ).sub( 1 ) ).toVar();
-
-						sum = add( sum, ...around.pass.targets.map( ( { name } ) => textureLoad( small.get( name ), at ) ) ).toVar();
-
-					}
-
-					result.then = { target: renderTarget( [ around ], null, LinearFilter ), quad: fullScreen( 'around', { fragmentNode: native( aroundText( model, isGlsl ) )( sum ) } ) };
+					result.then = { target: renderTarget( [ around ], null, LinearFilter ), quad: fullScreen( 'around', { fragmentNode: native( aroundText( model, isGlsl ) )( sumAround( textures, native( sumText( model, isGlsl ) ) ) ) } ) };
 					written.set( around.name, texture( result.then.target.texture, pixel.sub( viewport.xy ).div( viewport.zw ) ) );
 
 				}

@@ -48,9 +48,9 @@ export async function compared( backend, { scene: name = 'fifty', camera: camera
  * Times of a frame, each method in turn for several rounds, so that a machine that slows down slows all of them. Every ratio is
  * of one round; the median of the rounds is returned.
  */
-export async function timed( backend, { scene: name = 'fifty', models = [ 'medium' ], ranges = [ 'pixel', 'frame' ], rounds = 7, frames = 5, width = 640, height = 480 } ) {
+export async function timed( backend, { scene: name = 'fifty', models = [ 'medium' ], ranges = [ 'pixel', 'frame' ], rounds = 7, frames = 5, width = 640, height = 480, requiredLimits = {} } ) {
 
-	const renderer = await makeRenderer( backend );
+	const renderer = await makeRenderer( backend, { requiredLimits } );
 
 	renderer.setSize( width, height );
 
