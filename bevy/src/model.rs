@@ -49,7 +49,7 @@ impl Pass {
     }
 }
 
-/// What passes of some networks read of the frame around each pixel. This plugin does not draw it.
+/// A small texture of what surrounds each pixel. This plugin does not draw it.
 #[derive(Clone, Debug, Deserialize, PartialEq)]
 pub(crate) struct Around {
     pub name: String,
@@ -104,7 +104,7 @@ impl PeelnetModel {
         Self::shipped("large")
     }
 
-    /// One pass, 32 bytes a sample: the least time. What this plugin does not draw, the network's look at the surroundings of each pixel, would lower its error.
+    /// One pass, 32 bytes a sample. This plugin does not draw the small texture that lowers its error (`around` in `model.json`).
     #[must_use]
     pub fn one() -> Self {
         Self::shipped("one")
