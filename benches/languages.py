@@ -26,7 +26,8 @@ VERSION = "0.17.5"
 SHA256 = "5052caf9e955d8e7a48e22f536e82b44b72e83af46e824a9e99157c7809de691"
 
 # A function that is defined: its type, name and parameters.
-FUNCTION = re.compile(r"^(float|(?:vec|float)[234]|Peelnet\w+) (peelnet_\w+)\(([^)]*)\)\s*\{", re.M)
+FUNCTION = re.compile(r"^(float|(?:vec|float)[234]|mat4x4|float4x4|Peelnet\w+) (peelnet_\w+)\(([^)]*)\)\s*\{", re.M)
+MATRICES = ["mat4x4", "float4x4"]
 STRUCT = re.compile(r"^struct (Peelnet\w+)", re.M)
 
 
@@ -38,6 +39,8 @@ def calls(text, quad):
         if any(t.startswith("Peelnet") or t == "bool" for t in types):
             continue
         scale = {"float": "a.x", f"{quad}2": "a.xy", f"{quad}3": "a.xyz", f"{quad}4": "a"}
+        scale |= {whole: f"{whole}(a.xy)" for whole in ["uvec2", "uint2"]}
+        scale |= {matrix: f"{matrix}(a, a, a, a)" for matrix in MATRICES}
         arguments = ", ".join(scale[t] for t in types)
         value = f"{name}({arguments})"
         number = len(lines)
@@ -48,7 +51,7 @@ def calls(text, quad):
             member_type = re.search(r"(\S+)\s+\w+;", members).group(1)
             lines.append(f"    sum += v{number}.{member}{'' if member_type == 'float' else '.x'};")
         else:
-            lines.append(f"    sum += v{number}{'' if kind == 'float' else '.x'};")
+            lines.append(f"    sum += v{number}{'[0]' if kind in MATRICES else ''}{'' if kind == 'float' else '.x'};")
     if not lines:
         raise SystemExit("no function found: the text has another form than this script expects")
     return "\n".join(lines)

@@ -62,6 +62,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     for (name, model) in [
         ("small", PeelnetModel::small()),
         ("large", PeelnetModel::large()),
+        ("one", PeelnetModel::one()),
     ] {
         let headless = Headless::new(SIZE, msaa, model, &scene);
         pictures.push((name, headless.learned().picture()));

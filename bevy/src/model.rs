@@ -49,6 +49,14 @@ impl Pass {
     }
 }
 
+/// A small texture of what surrounds each pixel. This plugin does not draw it.
+#[derive(Clone, Debug, Deserialize, PartialEq)]
+pub(crate) struct Around {
+    pub name: String,
+    /// The expression that stands for it.
+    pub otherwise: String,
+}
+
 /// An exported network: `model.wgsl` and `model.json` of one folder of `models/`.
 ///
 /// The passes, targets, clear values and blends come from `model.json`; the mathematics are the functions of `model.wgsl`. Every recipe
@@ -70,6 +78,7 @@ struct Header {
 #[derive(Clone, Debug, Deserialize, PartialEq)]
 pub(crate) struct Description {
     recipe: String,
+    pub around: Option<Around>,
     pub passes: Vec<Pass>,
     pub resolve: String,
     pub resolve_reads: Vec<String>,
@@ -95,8 +104,14 @@ impl PeelnetModel {
         Self::shipped("large")
     }
 
+    /// One pass, 32 bytes a sample. This plugin does not draw the small texture that lowers its error (`around` in `model.json`).
+    #[must_use]
+    pub fn one() -> Self {
+        Self::shipped("one")
+    }
+
     fn shipped(name: &str) -> Self {
-        // Both are compiled in, and a test reads each of the three.
+        // Both are compiled in, and a test reads each of the four.
         let model = peelnet_shipped_networks::find(name).expect("a shipped network");
         Self::new(model.wgsl, model.json).expect("a shipped network is valid")
     }
@@ -133,12 +148,18 @@ impl PeelnetModel {
                  export the network again"
             )));
         }
-        let description: Description = serde_json::from_str(json).map_err(unreadable)?;
+        let mut description: Description = serde_json::from_str(json).map_err(unreadable)?;
+        if let Some(Around { name, .. }) = &description.around {
+            let passes = description.passes.iter_mut().map(|pass| &mut pass.reads);
+            for reads in passes.chain([&mut description.resolve_reads]) {
+                reads.retain(|read| read != name);
+            }
+        }
         let wgsl = wgsl.into();
         match description.check(&wgsl) {
             Ok(()) => Ok(Self { wgsl, description }),
             Err(reason) => Err(PeelnetError(format!(
-                "this plugin cannot draw with a network of recipe {:?}: {reason}; take small, medium, large or an anchored one",
+                "this plugin cannot draw with a network of recipe {:?}: {reason}; take small, medium, large, one or an anchored one",
                 description.recipe
             ))),
         }
@@ -178,7 +199,7 @@ impl Description {
         if !wgsl.contains(&format!("Recipe {},", self.recipe)) {
             return Err("the text is not of the network that the description is of".into());
         }
-        for function in ["peelnet_zeta", "peelnet_fragment", "peelnet_resolve"] {
+        for function in ["peelnet_zeta", "peelnet_resolve"] {
             if !wgsl.contains(&format!("fn {function}(")) {
                 return Err(format!("its text has no function {function}"));
             }
@@ -240,12 +261,14 @@ mod tests {
             (PeelnetModel::small(), 38),
             (PeelnetModel::medium(), 42),
             (PeelnetModel::large(), 50),
+            (PeelnetModel::one(), 32),
         ] {
             assert_eq!(model.bytes_per_sample(), bytes, "{}", model.recipe());
             // Nothing is lit before the last pass.
             let needs = |p: &Pass| (p.needs("alpha"), p.needs("rgb"));
-            let needs: Vec<_> = model.description.passes.iter().map(needs).collect();
-            assert_eq!(needs, [(true, false), (true, false), (true, true)]);
+            let mut needs: Vec<_> = model.description.passes.iter().map(needs).collect();
+            assert_eq!(needs.pop(), Some((true, true)));
+            assert!(needs.iter().all(|needs| *needs == (true, false)));
         }
     }
 

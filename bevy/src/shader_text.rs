@@ -3,7 +3,7 @@
 //! `draw.wesl` is the module that materials import. One function of it serves all passes: `PEELNET_PASS_<number>` says which one is compiled. The
 //! names of targets, the statements and the expressions are those of `model.json`.
 
-use crate::model::{PeelnetModel, Target};
+use crate::model::{Around, PeelnetModel, Target};
 use std::fmt::Write as _;
 
 /// The bind group of the statistics: the one after Bevy's view, light probes, meshes and materials.
@@ -44,7 +44,7 @@ fn network_text(model: &PeelnetModel, group: usize) -> String {
     text
 }
 
-/// Reads targets into variables of their names. The last argument is the sample of a multisampled texture, and the level of another, where it is 0.
+/// Reads targets into variables of their names, and says what else a network's calls name. The last argument is the sample of a multisampled texture, and the level of another, where it is 0.
 fn reads(model: &PeelnetModel, names: &[String]) -> String {
     let targets = model.targets().filter(|t| names.contains(&t.name));
     let lines = targets.map(|target| {
@@ -53,7 +53,14 @@ fn reads(model: &PeelnetModel, names: &[String]) -> String {
             "    let {name} = textureLoad(peelnet_target_{name}, peelnet_at, peelnet_sample){channels};\n"
         )
     });
-    lines.collect()
+    let mut text: String = lines.collect();
+    if let Some(Around { name, otherwise }) = &model.description.around {
+        let _ = writeln!(text, "    let {name} = {otherwise};");
+    }
+    if model.wgsl.contains("fn peelnet_noise(") {
+        text.push_str("    let noise = peelnet_noise(vec2u(peelnet_at));\n");
+    }
+    text
 }
 
 /// The module `bevy_peelnet::draw`.

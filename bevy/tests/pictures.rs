@@ -75,6 +75,8 @@ fn many_layers_err_far_less_than_bevys_sorting() {
         (PeelnetModel::small(), Msaa::Off, 0.2, bevys),
         (PeelnetModel::medium(), Msaa::Off, 0.1, bevys),
         (PeelnetModel::large(), Msaa::Off, 0.1, bevys),
+        (PeelnetModel::one(), Msaa::Off, 0.4, bevys),
+        (PeelnetModel::one(), Msaa::Sample4, 0.4, bevys_of_four),
         (PeelnetModel::medium(), Msaa::Sample4, 0.1, bevys_of_four),
     ] {
         let recipe = model.recipe().to_owned();

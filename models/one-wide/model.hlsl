@@ -28,7 +28,16 @@
 //    colour of the pixel: 0.6135939, 0.3594189, 0.24165452
 //
 // How to draw with it. Targets may have 32 bits a channel wherever 16 are named.
-// 0. zeta = peelnet_zeta(z, near, far): z is the distance along the view axis, near and far the range of z that the bounding boxes of the transparent objects in view span, clipped to the camera's. A tight range matters more than anything else you choose. Compute zeta with this function in all passes. Its range is the same for the whole frame: peelnet_zeta_in(z, peelnet_range(near, far)) is the same value, and the range may be passed in. Where boxes show that nothing lies between two depths, use peelnet_cut(zeta, gaps) for zeta: it leaves up to two such gaps out. quantiles says where among the depths around the pixel most is seen: peelnet_even() where nothing is known but near and far, with several times the error. To know it, draw depth and opacity alone at an eighth of the width and the height, the middles of its pixels 8 x + 4 and 8 y + 4 of the frame: peelnet_tile_bins into 8-bit targets that add (three of four channels and two of two stay within 32 bytes a sample) and peelnet_tile_nearest into one r16float target that keeps the most, cleared to 0 and to -65504; then sum peelnet_tile_seen of the nine pixels around each, group by group of four bins, and keep peelnet_quantiles of the sums. Read it with linear interpolation. noise is any number in 0 .. 1 that is the same for all of a pixel: it hides the steps of what is kept of the nearest fragment; 0.5 where that does not matter.
+// 0. zeta = peelnet_zeta(z, near, far): z is the distance along the view axis, near and far the range of z that the bounding boxes of the transparent objects in view span, clipped to the camera's. A tight range matters more than anything else you choose. Compute zeta with this function in all passes. Its range is the same for the whole frame: peelnet_zeta_in(z, peelnet_range(near, far)) is the same value, and the range may be passed in. Where boxes show that nothing lies between two depths, use peelnet_cut(zeta, gaps) for zeta: it leaves up to two such gaps out. quantiles says where among the depths around the pixel most is seen: peelnet_even() where nothing is known but near and far, with several times the error. noise is any number in 0 .. 1 that is the same for all of a pixel, such as peelnet_noise(pixel): it hides the steps of what is kept of the nearest fragment; 0.5 where that does not matter.
+//    quantiles: rgba8unorm, a texture of one texel for 8 by 8 pixels, read with linear interpolation; peelnet_even() where it is not drawn.
+//    At its size, draw all transparent surfaces, in any order. float4x4 bins = peelnet_tile_bins(alpha, zeta);
+//    bins_a: rgba8unorm, cleared to 0, blending ADD, from bins[0]
+//    bins_b: rgba8unorm, cleared to 0, blending ADD, from bins[1]
+//    bins_c: rgba8unorm, cleared to 0, blending ADD, from bins[2]
+//    bins_d: rg8unorm, cleared to 0, blending ADD, from bins[3].xy
+//    bins_e: rg8unorm, cleared to 0, blending ADD, from bins[3].zw
+//    tile_nearest: r16float, cleared to -65504, blending MAX, from peelnet_tile_nearest(alpha, zeta)
+//    Then each of its texels is peelnet_quantiles(sum): sum adds, over the 3 by 3 texels around it, peelnet_tile_seen(float4x4(bins_a, bins_b, bins_c, float4(bins_d, bins_e)), tile_nearest).
 // 1. Pass "gather": draw all transparent surfaces, in any order. PeelnetStatistics s = peelnet_statistics(alpha, rgb, zeta, quantiles, noise);
 //    sum_a: rgba16float, cleared to 0, 0, 0, -65504, blending ADD for rgb, MAX for alpha, from s.sum_a
 //    sum_b: rgba16float, cleared to 0, 0, 0, -65504, blending ADD for rgb, MAX for alpha, from s.sum_b
@@ -69,13 +78,6 @@ struct PeelnetNearest {
     float coverage;
     float alpha;
     float left;
-};
-
-struct PeelnetTile {
-    float4 a;
-    float4 b;
-    float4 c;
-    float4 d;
 };
 
 struct PeelnetStatistics {
@@ -156,6 +158,11 @@ float3 peelnet_levels(float3 halves)
     return ((30719.5).xxx + (sign(halves) * from_middle_1));
 }
 
+float peelnet_noise(uint2 pixel)
+{
+    return (float((((pixel.x * 12664746u) + (pixel.y * 9560334u)) & 16777215u)) * 5.9604645e-8);
+}
+
 float4 peelnet_even()
 {
     return float4(0.06, 0.35, 0.65, 0.94);
@@ -189,16 +196,7 @@ float peelnet_level(float absorbance)
     return max(floor(((absorbance * PEELNET_BIN_LEVELS) + 0.5)), 1.0);
 }
 
-PeelnetTile ConstructPeelnetTile(float4 arg0, float4 arg1, float4 arg2, float4 arg3) {
-    PeelnetTile ret = (PeelnetTile)0;
-    ret.a = arg0;
-    ret.b = arg1;
-    ret.c = arg2;
-    ret.d = arg3;
-    return ret;
-}
-
-PeelnetTile peelnet_tile_bins(float alpha_1, float zeta_1)
+float4x4 peelnet_tile_bins(float alpha_1, float zeta_1)
 {
     const float _e2 = peelnet_absorbance(alpha_1);
     const float _e3 = peelnet_level(_e2);
@@ -207,8 +205,7 @@ PeelnetTile peelnet_tile_bins(float alpha_1, float zeta_1)
     const float4 _e14 = peelnet_in_bins(_e3, depth_3, 4.0);
     const float4 _e19 = peelnet_in_bins(_e3, depth_3, 8.0);
     const float4 _e24 = peelnet_in_bins(_e3, depth_3, 12.0);
-    const PeelnetTile peelnettile = ConstructPeelnetTile((_e9 / (255.0).xxxx), (_e14 / (255.0).xxxx), (_e19 / (255.0).xxxx), (_e24 / (255.0).xxxx));
-    return peelnettile;
+    return float4x4((_e9 / (255.0).xxxx), (_e14 / (255.0).xxxx), (_e19 / (255.0).xxxx), (_e24 / (255.0).xxxx));
 }
 
 float peelnet_tile_nearest(float alpha_2, float zeta_2)
@@ -228,12 +225,12 @@ float4 peelnet_seen(float4 bins, float4 taken, float front)
     return ((seen_2 * max((bins - taken), (0.0).xxxx)) / max(bins, (1.0).xxxx));
 }
 
-PeelnetTile peelnet_tile_seen(PeelnetTile bins_1, float nearest)
+float4x4 peelnet_tile_seen(float4x4 bins_1, float nearest)
 {
-    float4 a = floor(((bins_1.a * 255.0) + (0.5).xxxx));
-    float4 b_3 = floor(((bins_1.b * 255.0) + (0.5).xxxx));
-    float4 c = floor(((bins_1.c * 255.0) + (0.5).xxxx));
-    float4 d = floor(((bins_1.d * 255.0) + (0.5).xxxx));
+    float4 a = floor(((bins_1[0] * 255.0) + (0.5).xxxx));
+    float4 b_3 = floor(((bins_1[1] * 255.0) + (0.5).xxxx));
+    float4 c = floor(((bins_1[2] * 255.0) + (0.5).xxxx));
+    float4 d = floor(((bins_1[3] * 255.0) + (0.5).xxxx));
     const float3 _e31 = peelnet_levels((nearest).xxx);
     float level_1 = max(_e31.x, 0.0);
     float back = floor((level_1 * 0.00390625));
@@ -251,8 +248,7 @@ PeelnetTile peelnet_tile_seen(PeelnetTile bins_1, float nearest)
     const float4 _e73 = peelnet_seen(c, _e72, to_c);
     const float4 _e75 = peelnet_in_bins(_e52, depth_4, 12.0);
     const float4 _e76 = peelnet_seen(d, _e75, to_d);
-    const PeelnetTile peelnettile_1 = ConstructPeelnetTile(_e67, _e70, _e73, _e76);
-    return peelnettile_1;
+    return float4x4(_e67, _e70, _e73, _e76);
 }
 
 float peelnet_passed(float share, float before, float4 bins_2)
@@ -262,12 +258,12 @@ float peelnet_passed(float share, float before, float4 bins_2)
     return dot(clamp((((share).xxxx - begin_1) / max(bins_2, (1e-9).xxxx)), (0.0).xxxx, (1.0).xxxx), (1.0).xxxx);
 }
 
-float4 peelnet_quantiles(PeelnetTile seen)
+float4 peelnet_quantiles(float4x4 seen)
 {
-    float4 a_1 = (seen.a + (0.00125).xxxx);
-    float4 b_4 = (seen.b + (0.00125).xxxx);
-    float4 c_1 = (seen.c + (0.00125).xxxx);
-    float4 d_1 = (seen.d + (0.00125).xxxx);
+    float4 a_1 = (seen[0] + (0.00125).xxxx);
+    float4 b_4 = (seen[1] + (0.00125).xxxx);
+    float4 c_1 = (seen[2] + (0.00125).xxxx);
+    float4 d_1 = (seen[3] + (0.00125).xxxx);
     float to_b_1 = dot(a_1, (1.0).xxxx);
     float to_c_1 = (to_b_1 + dot(b_4, (1.0).xxxx));
     float to_d_1 = (to_c_1 + dot(c_1, (1.0).xxxx));

@@ -28,7 +28,16 @@
 //    colour of the pixel: 0.61373997, 0.352721, 0.24796969
 //
 // How to draw with it. Targets may have 32 bits a channel wherever 16 are named.
-// 0. zeta = peelnet_zeta(z, near, far): z is the distance along the view axis, near and far the range of z that the bounding boxes of the transparent objects in view span, clipped to the camera's. A tight range matters more than anything else you choose. Compute zeta with this function in all passes. Its range is the same for the whole frame: peelnet_zeta_in(z, peelnet_range(near, far)) is the same value, and the range may be passed in. Where boxes show that nothing lies between two depths, use peelnet_cut(zeta, gaps) for zeta: it leaves up to two such gaps out. quantiles says where among the depths around the pixel most is seen: peelnet_even() where nothing is known but near and far, with several times the error. To know it, draw depth and opacity alone at an eighth of the width and the height, the middles of its pixels 8 x + 4 and 8 y + 4 of the frame: peelnet_tile_bins into 8-bit targets that add (three of four channels and two of two stay within 32 bytes a sample) and peelnet_tile_nearest into one r16float target that keeps the most, cleared to 0 and to -65504; then sum peelnet_tile_seen of the nine pixels around each, group by group of four bins, and keep peelnet_quantiles of the sums. Read it with linear interpolation. noise is any number in 0 .. 1 that is the same for all of a pixel: it hides the steps of what is kept of the nearest fragment; 0.5 where that does not matter.
+// 0. zeta = peelnet_zeta(z, near, far): z is the distance along the view axis, near and far the range of z that the bounding boxes of the transparent objects in view span, clipped to the camera's. A tight range matters more than anything else you choose. Compute zeta with this function in all passes. Its range is the same for the whole frame: peelnet_zeta_in(z, peelnet_range(near, far)) is the same value, and the range may be passed in. Where boxes show that nothing lies between two depths, use peelnet_cut(zeta, gaps) for zeta: it leaves up to two such gaps out. quantiles says where among the depths around the pixel most is seen: peelnet_even() where nothing is known but near and far, with several times the error. noise is any number in 0 .. 1 that is the same for all of a pixel, such as peelnet_noise(pixel): it hides the steps of what is kept of the nearest fragment; 0.5 where that does not matter.
+//    quantiles: rgba8unorm, a texture of one texel for 8 by 8 pixels, read with linear interpolation; peelnet_even() where it is not drawn.
+//    At its size, draw all transparent surfaces, in any order. float4x4 bins = peelnet_tile_bins(alpha, zeta);
+//    bins_a: rgba8unorm, cleared to 0, blending ADD, from bins[0]
+//    bins_b: rgba8unorm, cleared to 0, blending ADD, from bins[1]
+//    bins_c: rgba8unorm, cleared to 0, blending ADD, from bins[2]
+//    bins_d: rg8unorm, cleared to 0, blending ADD, from bins[3].xy
+//    bins_e: rg8unorm, cleared to 0, blending ADD, from bins[3].zw
+//    tile_nearest: r16float, cleared to -65504, blending MAX, from peelnet_tile_nearest(alpha, zeta)
+//    Then each of its texels is peelnet_quantiles(sum): sum adds, over the 3 by 3 texels around it, peelnet_tile_seen(float4x4(bins_a, bins_b, bins_c, float4(bins_d, bins_e)), tile_nearest).
 // 1. Pass "gather": draw all transparent surfaces, in any order. PeelnetStatistics s = peelnet_statistics(alpha, rgb, zeta, quantiles, noise);
 //    sum_a: rgba16float, cleared to 0, 0, 0, -65504, blending ADD for rgb, MAX for alpha, from s.sum_a
 //    sum_b: rgba16float, cleared to 0, 0, 0, -65504, blending ADD for rgb, MAX for alpha, from s.sum_b
@@ -69,12 +78,6 @@ struct PeelnetNearest {
     float coverage;
     float alpha;
     float left;
-};
-struct PeelnetTile {
-    metal::float4 a;
-    metal::float4 b;
-    metal::float4 c;
-    metal::float4 d;
 };
 struct PeelnetStatistics {
     metal::float4 sum_a;
@@ -143,6 +146,12 @@ metal::float3 peelnet_levels(
     return metal::float3(30719.5) + (metal::sign(halves) * from_middle_1);
 }
 
+float peelnet_noise(
+    metal::uint2 pixel
+) {
+    return static_cast<float>(((pixel.x * 12664746u) + (pixel.y * 9560334u)) & 16777215u) * 0.000000059604645;
+}
+
 metal::float4 peelnet_even(
 ) {
     return metal::float4(0.06, 0.35, 0.65, 0.94);
@@ -184,7 +193,7 @@ float peelnet_level(
     return metal::max(metal::floor((absorbance * PEELNET_BIN_LEVELS) + 0.5), 1.0);
 }
 
-PeelnetTile peelnet_tile_bins(
+metal::float4x4 peelnet_tile_bins(
     float alpha_1,
     float zeta_1
 ) {
@@ -195,7 +204,7 @@ PeelnetTile peelnet_tile_bins(
     metal::float4 _e14 = peelnet_in_bins(_e3, depth_3, 4.0);
     metal::float4 _e19 = peelnet_in_bins(_e3, depth_3, 8.0);
     metal::float4 _e24 = peelnet_in_bins(_e3, depth_3, 12.0);
-    return PeelnetTile {_e9 / metal::float4(255.0), _e14 / metal::float4(255.0), _e19 / metal::float4(255.0), _e24 / metal::float4(255.0)};
+    return metal::float4x4(_e9 / metal::float4(255.0), _e14 / metal::float4(255.0), _e19 / metal::float4(255.0), _e24 / metal::float4(255.0));
 }
 
 float peelnet_tile_nearest(
@@ -220,14 +229,14 @@ metal::float4 peelnet_seen(
     return (seen_2 * metal::max(bins - taken, metal::float4(0.0))) / metal::max(bins, metal::float4(1.0));
 }
 
-PeelnetTile peelnet_tile_seen(
-    PeelnetTile bins_1,
+metal::float4x4 peelnet_tile_seen(
+    metal::float4x4 bins_1,
     float nearest
 ) {
-    metal::float4 a = metal::floor((bins_1.a * 255.0) + metal::float4(0.5));
-    metal::float4 b_3 = metal::floor((bins_1.b * 255.0) + metal::float4(0.5));
-    metal::float4 c = metal::floor((bins_1.c * 255.0) + metal::float4(0.5));
-    metal::float4 d = metal::floor((bins_1.d * 255.0) + metal::float4(0.5));
+    metal::float4 a = metal::floor((bins_1[0] * 255.0) + metal::float4(0.5));
+    metal::float4 b_3 = metal::floor((bins_1[1] * 255.0) + metal::float4(0.5));
+    metal::float4 c = metal::floor((bins_1[2] * 255.0) + metal::float4(0.5));
+    metal::float4 d = metal::floor((bins_1[3] * 255.0) + metal::float4(0.5));
     metal::float3 _e31 = peelnet_levels(metal::float3(nearest));
     float level_1 = metal::max(_e31.x, 0.0);
     float back = metal::floor(level_1 * 0.00390625);
@@ -245,7 +254,7 @@ PeelnetTile peelnet_tile_seen(
     metal::float4 _e73 = peelnet_seen(c, _e72, to_c);
     metal::float4 _e75 = peelnet_in_bins(_e52, depth_4, 12.0);
     metal::float4 _e76 = peelnet_seen(d, _e75, to_d);
-    return PeelnetTile {_e67, _e70, _e73, _e76};
+    return metal::float4x4(_e67, _e70, _e73, _e76);
 }
 
 float peelnet_passed(
@@ -259,12 +268,12 @@ float peelnet_passed(
 }
 
 metal::float4 peelnet_quantiles(
-    PeelnetTile seen
+    metal::float4x4 seen
 ) {
-    metal::float4 a_1 = seen.a + metal::float4(0.00125);
-    metal::float4 b_4 = seen.b + metal::float4(0.00125);
-    metal::float4 c_1 = seen.c + metal::float4(0.00125);
-    metal::float4 d_1 = seen.d + metal::float4(0.00125);
+    metal::float4 a_1 = seen[0] + metal::float4(0.00125);
+    metal::float4 b_4 = seen[1] + metal::float4(0.00125);
+    metal::float4 c_1 = seen[2] + metal::float4(0.00125);
+    metal::float4 d_1 = seen[3] + metal::float4(0.00125);
     float to_b_1 = metal::dot(a_1, metal::float4(1.0));
     float to_c_1 = to_b_1 + metal::dot(b_4, metal::float4(1.0));
     float to_d_1 = to_c_1 + metal::dot(c_1, metal::float4(1.0));

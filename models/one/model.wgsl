@@ -28,7 +28,16 @@
 //    colour of the pixel: 0.61373997, 0.352721, 0.24796969
 //
 // How to draw with it. Targets may have 32 bits a channel wherever 16 are named.
-// 0. zeta = peelnet_zeta(z, near, far): z is the distance along the view axis, near and far the range of z that the bounding boxes of the transparent objects in view span, clipped to the camera's. A tight range matters more than anything else you choose. Compute zeta with this function in all passes. Its range is the same for the whole frame: peelnet_zeta_in(z, peelnet_range(near, far)) is the same value, and the range may be passed in. Where boxes show that nothing lies between two depths, use peelnet_cut(zeta, gaps) for zeta: it leaves up to two such gaps out. quantiles says where among the depths around the pixel most is seen: peelnet_even() where nothing is known but near and far, with several times the error. To know it, draw depth and opacity alone at an eighth of the width and the height, the middles of its pixels 8 x + 4 and 8 y + 4 of the frame: peelnet_tile_bins into 8-bit targets that add (three of four channels and two of two stay within 32 bytes a sample) and peelnet_tile_nearest into one r16float target that keeps the most, cleared to 0 and to -65504; then sum peelnet_tile_seen of the nine pixels around each, group by group of four bins, and keep peelnet_quantiles of the sums. Read it with linear interpolation. noise is any number in 0 .. 1 that is the same for all of a pixel: it hides the steps of what is kept of the nearest fragment; 0.5 where that does not matter.
+// 0. zeta = peelnet_zeta(z, near, far): z is the distance along the view axis, near and far the range of z that the bounding boxes of the transparent objects in view span, clipped to the camera's. A tight range matters more than anything else you choose. Compute zeta with this function in all passes. Its range is the same for the whole frame: peelnet_zeta_in(z, peelnet_range(near, far)) is the same value, and the range may be passed in. Where boxes show that nothing lies between two depths, use peelnet_cut(zeta, gaps) for zeta: it leaves up to two such gaps out. quantiles says where among the depths around the pixel most is seen: peelnet_even() where nothing is known but near and far, with several times the error. noise is any number in 0 .. 1 that is the same for all of a pixel, such as peelnet_noise(pixel): it hides the steps of what is kept of the nearest fragment; 0.5 where that does not matter.
+//    quantiles: rgba8unorm, a texture of one texel for 8 by 8 pixels, read with linear interpolation; peelnet_even() where it is not drawn.
+//    At its size, draw all transparent surfaces, in any order. let bins = peelnet_tile_bins(alpha, zeta);
+//    bins_a: rgba8unorm, cleared to 0, blending ADD, from bins[0]
+//    bins_b: rgba8unorm, cleared to 0, blending ADD, from bins[1]
+//    bins_c: rgba8unorm, cleared to 0, blending ADD, from bins[2]
+//    bins_d: rg8unorm, cleared to 0, blending ADD, from bins[3].xy
+//    bins_e: rg8unorm, cleared to 0, blending ADD, from bins[3].zw
+//    tile_nearest: r16float, cleared to -65504, blending MAX, from peelnet_tile_nearest(alpha, zeta)
+//    Then each of its texels is peelnet_quantiles(sum): sum adds, over the 3 by 3 texels around it, peelnet_tile_seen(mat4x4f(bins_a, bins_b, bins_c, vec4f(bins_d, bins_e)), tile_nearest).
 // 1. Pass "gather": draw all transparent surfaces, in any order. let s = peelnet_statistics(alpha, rgb, zeta, quantiles, noise);
 //    sum_a: rgba16float, cleared to 0, 0, 0, -65504, blending ADD for rgb, MAX for alpha, from s.sum_a
 //    sum_b: rgba16float, cleared to 0, 0, 0, -65504, blending ADD for rgb, MAX for alpha, from s.sum_b
@@ -127,12 +136,9 @@ struct PeelnetNearest {
     left: f32,
 }
 
-// Sixteen bins of depth, nearest first.
-struct PeelnetTile {
-    a: vec4f,
-    b: vec4f,
-    c: vec4f,
-    d: vec4f,
+// The noise of a pixel, 0 .. 1: neighbours' lie far apart (Roberts 2018, the sequence R2).
+fn peelnet_noise(pixel: vec2u) -> f32 {
+    return f32((pixel.x * 12664746u + pixel.y * 9560334u) & 16777215u) * (1.0 / 16777216.0);
 }
 
 // The quantiles of a frame of which only near and far are known.
@@ -169,11 +175,11 @@ fn peelnet_level(absorbance: f32) -> f32 {
     return max(floor(absorbance * PEELNET_BIN_LEVELS + 0.5), 1.0);
 }
 
-// What a fragment adds to the bins of its tile, of 8 bits.
-fn peelnet_tile_bins(alpha: f32, zeta: f32) -> PeelnetTile {
+// What a fragment adds to the bins of its tile, of 8 bits: four in a column, nearest first.
+fn peelnet_tile_bins(alpha: f32, zeta: f32) -> mat4x4f {
     let level = peelnet_level(peelnet_absorbance(alpha));
     let depth = 0.5 * zeta + 0.5;
-    return PeelnetTile(
+    return mat4x4f(
         peelnet_in_bins(level, depth, 0.0) / 255.0,
         peelnet_in_bins(level, depth, 4.0) / 255.0,
         peelnet_in_bins(level, depth, 8.0) / 255.0,
@@ -198,11 +204,11 @@ fn peelnet_seen(bins: vec4f, taken: vec4f, front: f32) -> vec4f {
 }
 
 // What is seen in a tile's pixel behind its nearest fragment. bins, nearest: as the targets hold them.
-fn peelnet_tile_seen(bins: PeelnetTile, nearest: f32) -> PeelnetTile {
-    let a = floor(bins.a * 255.0 + 0.5);
-    let b = floor(bins.b * 255.0 + 0.5);
-    let c = floor(bins.c * 255.0 + 0.5);
-    let d = floor(bins.d * 255.0 + 0.5);
+fn peelnet_tile_seen(bins: mat4x4f, nearest: f32) -> mat4x4f {
+    let a = floor(bins[0] * 255.0 + 0.5);
+    let b = floor(bins[1] * 255.0 + 0.5);
+    let c = floor(bins[2] * 255.0 + 0.5);
+    let d = floor(bins[3] * 255.0 + 0.5);
     let level = max(peelnet_levels(vec3f(nearest)).x, 0.0);
     let back = floor(level * (1.0 / PEELNET_TILE_OPACITIES));
     let opacity = (level - back * PEELNET_TILE_OPACITIES) * (1.0 / (PEELNET_TILE_OPACITIES - 1.0));
@@ -211,7 +217,7 @@ fn peelnet_tile_seen(bins: PeelnetTile, nearest: f32) -> PeelnetTile {
     let to_b = dot(a, vec4f(1.0));
     let to_c = to_b + dot(b, vec4f(1.0));
     let to_d = to_c + dot(c, vec4f(1.0));
-    return PeelnetTile(
+    return mat4x4f(
         peelnet_seen(a, peelnet_in_bins(taken, depth, 0.0), 0.0),
         peelnet_seen(b, peelnet_in_bins(taken, depth, 4.0), to_b),
         peelnet_seen(c, peelnet_in_bins(taken, depth, 8.0), to_c),
@@ -227,12 +233,12 @@ fn peelnet_passed(share: f32, before: f32, bins: vec4f) -> f32 {
 }
 
 // The quantiles of what is seen in nine pixels together.
-fn peelnet_quantiles(seen: PeelnetTile) -> vec4f {
+fn peelnet_quantiles(seen: mat4x4f) -> vec4f {
     // Evenly spread where nothing is known.
-    let a = seen.a + 0.00125;
-    let b = seen.b + 0.00125;
-    let c = seen.c + 0.00125;
-    let d = seen.d + 0.00125;
+    let a = seen[0] + 0.00125;
+    let b = seen[1] + 0.00125;
+    let c = seen[2] + 0.00125;
+    let d = seen[3] + 0.00125;
     let to_b = dot(a, vec4f(1.0));
     let to_c = to_b + dot(b, vec4f(1.0));
     let to_d = to_c + dot(c, vec4f(1.0));

@@ -25,8 +25,3 @@ fn stored(q: vec4f) -> u32 {
 fn quantiles_of(texel: u32) -> vec4f {
     return unpack4x8unorm(texel);
 }
-
-// The noise of a pixel, 0 .. 1: neighbours' lie far apart (Roberts 2018, the sequence R2).
-fn noise_at(pixel: vec2u) -> f32 {
-    return f32((pixel.x * 12664746u + pixel.y * 9560334u) & 16777215u) * (1.0 / 16777216.0);
-}

@@ -36,12 +36,9 @@ struct PeelnetNearest {
     left: f32,
 }
 
-// Sixteen bins of depth, nearest first.
-struct PeelnetTile {
-    a: vec4f,
-    b: vec4f,
-    c: vec4f,
-    d: vec4f,
+// The noise of a pixel, 0 .. 1: neighbours' lie far apart (Roberts 2018, the sequence R2).
+fn peelnet_noise(pixel: vec2u) -> f32 {
+    return f32((pixel.x * 12664746u + pixel.y * 9560334u) & 16777215u) * (1.0 / 16777216.0);
 }
 
 // The quantiles of a frame of which only near and far are known.
@@ -78,11 +75,11 @@ fn peelnet_level(absorbance: f32) -> f32 {
     return max(floor(absorbance * PEELNET_BIN_LEVELS + 0.5), 1.0);
 }
 
-// What a fragment adds to the bins of its tile, of 8 bits.
-fn peelnet_tile_bins(alpha: f32, zeta: f32) -> PeelnetTile {
+// What a fragment adds to the bins of its tile, of 8 bits: four in a column, nearest first.
+fn peelnet_tile_bins(alpha: f32, zeta: f32) -> mat4x4f {
     let level = peelnet_level(peelnet_absorbance(alpha));
     let depth = 0.5 * zeta + 0.5;
-    return PeelnetTile(
+    return mat4x4f(
         peelnet_in_bins(level, depth, 0.0) / 255.0,
         peelnet_in_bins(level, depth, 4.0) / 255.0,
         peelnet_in_bins(level, depth, 8.0) / 255.0,
@@ -107,11 +104,11 @@ fn peelnet_seen(bins: vec4f, taken: vec4f, front: f32) -> vec4f {
 }
 
 // What is seen in a tile's pixel behind its nearest fragment. bins, nearest: as the targets hold them.
-fn peelnet_tile_seen(bins: PeelnetTile, nearest: f32) -> PeelnetTile {
-    let a = floor(bins.a * 255.0 + 0.5);
-    let b = floor(bins.b * 255.0 + 0.5);
-    let c = floor(bins.c * 255.0 + 0.5);
-    let d = floor(bins.d * 255.0 + 0.5);
+fn peelnet_tile_seen(bins: mat4x4f, nearest: f32) -> mat4x4f {
+    let a = floor(bins[0] * 255.0 + 0.5);
+    let b = floor(bins[1] * 255.0 + 0.5);
+    let c = floor(bins[2] * 255.0 + 0.5);
+    let d = floor(bins[3] * 255.0 + 0.5);
     let level = max(peelnet_levels(vec3f(nearest)).x, 0.0);
     let back = floor(level * (1.0 / PEELNET_TILE_OPACITIES));
     let opacity = (level - back * PEELNET_TILE_OPACITIES) * (1.0 / (PEELNET_TILE_OPACITIES - 1.0));
@@ -120,7 +117,7 @@ fn peelnet_tile_seen(bins: PeelnetTile, nearest: f32) -> PeelnetTile {
     let to_b = dot(a, vec4f(1.0));
     let to_c = to_b + dot(b, vec4f(1.0));
     let to_d = to_c + dot(c, vec4f(1.0));
-    return PeelnetTile(
+    return mat4x4f(
         peelnet_seen(a, peelnet_in_bins(taken, depth, 0.0), 0.0),
         peelnet_seen(b, peelnet_in_bins(taken, depth, 4.0), to_b),
         peelnet_seen(c, peelnet_in_bins(taken, depth, 8.0), to_c),
@@ -136,12 +133,12 @@ fn peelnet_passed(share: f32, before: f32, bins: vec4f) -> f32 {
 }
 
 // The quantiles of what is seen in nine pixels together.
-fn peelnet_quantiles(seen: PeelnetTile) -> vec4f {
+fn peelnet_quantiles(seen: mat4x4f) -> vec4f {
     // Evenly spread where nothing is known.
-    let a = seen.a + 0.00125;
-    let b = seen.b + 0.00125;
-    let c = seen.c + 0.00125;
-    let d = seen.d + 0.00125;
+    let a = seen[0] + 0.00125;
+    let b = seen[1] + 0.00125;
+    let c = seen[2] + 0.00125;
+    let d = seen[3] + 0.00125;
     let to_b = dot(a, vec4f(1.0));
     let to_c = to_b + dot(b, vec4f(1.0));
     let to_d = to_c + dot(c, vec4f(1.0));

@@ -2,7 +2,7 @@
 
 use crate::language::Language;
 use peelnet_model::Recipe;
-use peelnet_model::inputs::{Blend, Pass, Target};
+use peelnet_model::inputs::{Blend, Pass, SmallTexture, Target};
 use serde::Serialize;
 
 /// What a renderer must do around an exported text.
@@ -10,6 +10,9 @@ use serde::Serialize;
 pub struct Description {
     /// What comes before the passes.
     pub before: &'static str,
+    /// What the passes read of each pixel's surroundings.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub around: Option<&'static SmallTexture>,
     /// The passes, in order.
     pub passes: &'static [Pass],
     /// The call that resolves each pixel.
@@ -36,13 +39,14 @@ impl Description {
         let mut names: Vec<&str> = targets.map(|target| target.name).collect();
         names.extend(passes.iter().flat_map(|pass| pass.reads));
         let mut resolve_reads = Vec::new();
-        for word in resolve.split(|c: char| !c.is_alphanumeric()) {
+        for word in resolve.split(|c: char| !c.is_alphanumeric() && c != '_') {
             if names.contains(&word) && !resolve_reads.contains(&word) {
                 resolve_reads.push(word);
             }
         }
         Self {
             before: surroundings.before,
+            around: surroundings.around,
             passes,
             resolve,
             resolve_reads,
@@ -57,14 +61,28 @@ impl Description {
                 .to_owned(),
             format!("0. {}", self.before),
         ];
-        for (k, pass) in (1..).zip(self.passes) {
-            let compute = pass.compute.map(|value| language.declare(&value));
-            let (name, compute) = (pass.name, compute.unwrap_or_default());
+        if let Some(around) = self.around {
+            let SmallTexture {
+                name,
+                format,
+                every,
+                ..
+            } = around;
+            let [sum, write, otherwise] =
+                [around.sum, around.write, around.otherwise].map(|call| language.expression(call));
             lines.push(format!(
-                "{k}. Pass \"{name}\": draw all transparent surfaces, in any order. {compute}"
+                "   {name}: {format}, a texture of one texel for {every} by {every} pixels, read with linear interpolation; {otherwise} where it is not drawn."
             ));
-            let targets = pass.targets.iter();
-            lines.extend(targets.map(|target| target_line(target, language)));
+            lines.push(format!("   At its size, {}", drawn(&around.pass, language)));
+            lines.extend(target_lines(&around.pass, language));
+            lines.push(format!(
+                "   Then each of its texels is {write}: sum adds, over the 3 by 3 texels around it, {sum}."
+            ));
+        }
+        for (k, pass) in (1..).zip(self.passes) {
+            let (name, drawn) = (pass.name, drawn(pass, language));
+            lines.push(format!("{k}. Pass \"{name}\": {drawn}"));
+            lines.extend(target_lines(pass, language));
         }
         let (last, call) = (self.passes.len() + 1, language.expression(self.resolve));
         lines.push(format!(
@@ -73,6 +91,17 @@ impl Description {
         lines.extend(self.rules.iter().map(|rule| format!("- {rule}")));
         lines
     }
+}
+
+fn drawn(pass: &Pass, language: Language) -> String {
+    let compute = pass.compute.map(|value| language.declare(&value));
+    let compute = compute.unwrap_or_default();
+    format!("draw all transparent surfaces, in any order. {compute}")
+}
+
+fn target_lines(pass: &Pass, language: Language) -> impl Iterator<Item = String> {
+    let targets = pass.targets.iter();
+    targets.map(move |target| target_line(target, language))
 }
 
 fn target_line(target: &Target, language: Language) -> String {

@@ -31,8 +31,8 @@ pub(crate) struct Spelling {
     extension: &'static str,
     /// The version, and who has compiled and run such texts.
     pub(crate) about: &'static str,
-    /// Types of a number, of two, three and four.
-    types: [&'static str; 4],
+    /// Types of a number, of two, three and four, and of four by four.
+    types: [&'static str; 5],
     /// Whether texts of functions may compute in 16 bits.
     pub(crate) has_halves: bool,
 }
@@ -43,35 +43,35 @@ static SPELLINGS: [Spelling; 5] = [
         name: "wgsl",
         extension: "wgsl",
         about: "WGSL, plain WebGPU. Compiled by naga, and run on a GPU against the network at every export.",
-        types: ["f32", "vec2f", "vec3f", "vec4f"],
+        types: ["f32", "vec2f", "vec3f", "vec4f", "mat4x4f"],
         has_halves: true,
     },
     Spelling {
         name: "glsl-es",
         extension: "es.glsl",
         about: "GLSL ES 3.00, WebGL 2. Paste it below #version 300 es and precision highp float; and precision highp int;.",
-        types: ["float", "vec2", "vec3", "vec4"],
+        types: ["float", "vec2", "vec3", "vec4", "mat4"],
         has_halves: false,
     },
     Spelling {
         name: "glsl",
         extension: "glsl",
         about: "GLSL 4.50.",
-        types: ["float", "vec2", "vec3", "vec4"],
+        types: ["float", "vec2", "vec3", "vec4", "mat4"],
         has_halves: false,
     },
     Spelling {
         name: "hlsl",
         extension: "hlsl",
         about: "HLSL, shader model 6.0.",
-        types: ["float", "float2", "float3", "float4"],
+        types: ["float", "float2", "float3", "float4", "float4x4"],
         has_halves: true,
     },
     Spelling {
         name: "msl",
         extension: "metal",
         about: "Metal 2.4. No Metal compiler was at hand: this text was translated from WGSL that was compiled and run, and has not been compiled itself.",
-        types: ["float", "float2", "float3", "float4"],
+        types: ["float", "float2", "float3", "float4", "float4x4"],
         has_halves: true,
     },
 ];
@@ -109,11 +109,12 @@ impl Language {
 
     /// The statement that computes a value.
     pub(crate) fn declare(self, value: &Value) -> String {
-        let [number, pair, ..] = self.spelling().types;
+        let [number, pair, .., matrix] = self.spelling().types;
         let kind = match value.kind {
             _ if self == Self::Wgsl => return value.to_string(),
             ValueKind::Number => number,
             ValueKind::Pair => pair,
+            ValueKind::Matrix => matrix,
             ValueKind::Bins => "PeelnetBins",
             ValueKind::Statistics => "PeelnetStatistics",
         };

@@ -14,7 +14,7 @@ const PACKAGE = dirname( dirname( fileURLToPath( import.meta.url ) ) );
 const EXPORTS = join( PACKAGE, '../../models' );
 const MOST_BYTES = 10_000;
 
-const NAMES = [ 'small', 'medium', 'large', 'anchored-small', 'anchored-medium' ];
+const NAMES = [ 'small', 'medium', 'large', 'anchored-small', 'anchored-medium', 'one' ];
 
 // Comments cost bytes in every page; the licence's line stays.
 const withoutComments = ( text ) => text.split( '\n' ).filter( ( line ) => /^\s*(\/\/|$)/.test( line ) === false ).map( ( line ) => line.replace( /^ +/, '' ) ).join( '\n' );
@@ -33,8 +33,8 @@ for ( const name of NAMES ) {
 
 	if ( problem !== null ) throw new Error( `${ name }: ${ problem }` );
 
-	const { format, format_version, tool_version, recipe, parameters, topology, passes, resolve, resolve_reads } = description;
-	const kept = { format, format_version, tool_version, recipe, parameters, topology, passes, resolve, resolve_reads };
+	const { format, format_version, tool_version, recipe, parameters, topology, around, passes, resolve, resolve_reads } = description;
+	const kept = { format, format_version, tool_version, recipe, parameters, topology, around, passes, resolve, resolve_reads };
 	const module = `// A peelnet model for @peelnet/three, made by scripts/models.mjs. Licence: MIT OR Apache-2.0.\n`
 		+ `export const description = ${ JSON.stringify( kept ) };\nexport const wgsl = ${ JSON.stringify( wgsl ) };\nexport const glsl = ${ JSON.stringify( glsl ) };\n`
 		+ 'export default { description, wgsl, glsl };\n';

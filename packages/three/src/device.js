@@ -5,7 +5,51 @@ import { FORMATS, passesOf } from './model.js';
 // Bytes are counted as WebGPU counts them against maxColorAttachmentBytesPerSample.
 const bytesOf = ( pass ) => pass.targets.reduce( ( sum, target ) => sum + FORMATS[ target.format ].bytes, 0 );
 
-const isMixed = ( pass ) => pass.targets.some( ( target ) => target.color !== pass.targets[ 0 ].color || target.alpha !== pass.targets[ 0 ].color );
+const blendOf = ( target ) => `${ target.color } ${ target.alpha }`;
+
+/**
+ * The passes as a device draws them: one whose targets it cannot blend, or hold, at once is drawn in parts, one for each blend.
+ *
+ * @param {import('three/webgpu').Renderer} renderer
+ * @param {object} model
+ * @param {'pixel' | 'frame'} range
+ * @returns {object[]}
+ */
+export function drawnPasses( { backend }, model, range ) {
+
+	const isWhole = backend.isWebGPUBackend === true
+		? ( pass ) => bytesOf( pass ) <= backend.device.limits.maxColorAttachmentBytesPerSample
+		: () => Boolean( backend.drawBuffersIndexedExt );
+
+	return passesOf( model.description, range ).flatMap( ( pass ) => {
+
+		const blends = [ ...new Set( pass.targets.map( blendOf ) ) ];
+
+		return isWhole( pass ) ? [ pass ] : blends.map( ( blend ) => ( { ...pass, targets: pass.targets.filter( ( target ) => blendOf( target ) === blend ) } ) );
+
+	} );
+
+}
+
+/**
+ * Lets WebGL 2 without OES_draw_buffers_indexed blend as the targets of a pass do, which then are all alike.
+ *
+ * @returns {() => void} ends it
+ */
+export function blendAlike( { backend } ) {
+
+	const { gl, drawBuffersIndexedExt } = backend;
+
+	if ( backend.isWebGPUBackend === true || drawBuffersIndexedExt ) return () => {};
+
+	backend.drawBuffersIndexedExt = {
+		blendEquationSeparateiOES: ( index, ...equations ) => gl.blendEquationSeparate( ...equations ),
+		blendFuncSeparateiOES: ( index, ...factors ) => gl.blendFuncSeparate( ...factors )
+	};
+
+	return () => ( backend.drawBuffersIndexedExt = drawBuffersIndexedExt );
+
+}
 
 /**
  * What a device lacks for a model, as one sentence, or null where nothing is.
@@ -17,12 +61,12 @@ const isMixed = ( pass ) => pass.targets.some( ( target ) => target.color !== pa
  */
 export function deviceProblem( renderer, model, range ) {
 
-	const passes = passesOf( model.description, range );
+	const passes = drawnPasses( renderer, model, range );
 	const targets = passes.flatMap( ( pass ) => pass.targets );
 	const count = Math.max( ...passes.map( ( pass ) => pass.targets.length ) );
 	const lacks = ( what ) => `This device cannot draw the model "${ model.description.recipe }": ${ what }.`;
 
-	return renderer.backend.isWebGPUBackend === true ? webgpuProblem( renderer, passes, targets, count, lacks ) : webglProblem( renderer, model, passes, targets, count, lacks );
+	return renderer.backend.isWebGPUBackend === true ? webgpuProblem( renderer, passes, targets, count, lacks ) : webglProblem( renderer, model, targets, count, lacks );
 
 }
 
@@ -31,7 +75,7 @@ function webgpuProblem( { backend }, passes, targets, count, lacks ) {
 	const { limits, features } = backend.device;
 	const bytes = Math.max( ...passes.map( bytesOf ) );
 
-	if ( backend.compatibilityMode === true && passes.some( isMixed ) ) return lacks( 'WebGPU\'s compatibility mode has one blend for all targets' );
+	if ( backend.compatibilityMode === true ) return lacks( 'three.js blends no targets in WebGPU\'s compatibility mode' );
 
 	if ( limits.maxColorAttachments < count ) return lacks( `it needs ${ count } colour targets and has ${ limits.maxColorAttachments }` );
 
@@ -43,13 +87,11 @@ function webgpuProblem( { backend }, passes, targets, count, lacks ) {
 
 }
 
-function webglProblem( { backend }, model, passes, targets, count, lacks ) {
+function webglProblem( { backend }, model, targets, count, lacks ) {
 
 	const { gl, extensions } = backend;
 
 	if ( typeof model.glsl !== 'string' || model.glsl.includes( 'peelnet_resolve(' ) === false ) return `The model "${ model.description.recipe }" has no GLSL text, which WebGL 2 needs.`;
-
-	if ( passes.some( isMixed ) && ! backend.drawBuffersIndexedExt ) return lacks( 'WebGL 2 needs the extension OES_draw_buffers_indexed for targets of different blends' );
 
 	if ( ! extensions.get( 'EXT_color_buffer_float' ) && ! extensions.get( 'EXT_color_buffer_half_float' ) ) return lacks( 'WebGL 2 needs the extension EXT_color_buffer_float or EXT_color_buffer_half_float' );
 

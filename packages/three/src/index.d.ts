@@ -19,11 +19,27 @@ export interface PeelnetTarget {
 /** A pass that draws all transparent surfaces, in any order. */
 export interface PeelnetPassDescription {
 	name: string;
-	/** Targets of earlier passes that it reads. */
+	/** Targets of earlier passes, and the small texture, that it reads. */
 	reads: readonly string[];
 	/** What each fragment computes first. */
 	compute: string;
 	targets: readonly PeelnetTarget[];
+}
+
+/** A small texture of what surrounds each pixel, drawn before the passes that read it. */
+export interface PeelnetAround {
+	name: string;
+	format: string;
+	/** One texel for so many pixels of the frame, across and down. */
+	every: number;
+	/** Drawn at its size. */
+	pass: PeelnetPassDescription;
+	/** Summed over the 3 × 3 texels around each. */
+	sum: string;
+	/** A texel's value, of that sum. */
+	write: string;
+	/** Stands for it where it is not drawn. */
+	otherwise: string;
 }
 
 /** The content of an exported `model.json`. */
@@ -34,6 +50,7 @@ export interface PeelnetDescription {
 	recipe: string;
 	parameters: number;
 	topology: string;
+	around?: PeelnetAround;
 	passes: readonly PeelnetPassDescription[];
 	resolve: string;
 	resolve_reads: readonly string[];
@@ -49,7 +66,7 @@ export interface PeelnetModel {
 
 export interface PeelnetPassOptions {
 	model: PeelnetModel;
-	/** Where the slabs of depth come from: each pixel's own range, at one more pass (the default), or the frame's. */
+	/** Where depths are told apart: in each pixel's own range or surroundings, at one more pass (the default), or in the frame's. */
 	range?: 'pixel' | 'frame';
 	/** `[near, far]` of the distance along the view axis. The default is the range of the transparent objects' boxes in view. */
 	depthRange?: readonly [ number, number ] | null;

@@ -60,9 +60,21 @@ export function modelProblem( model ) {
 
 	if ( passes.length === 0 ) return unsupported( 'it describes no pass' );
 
+	const { around } = description;
 	const known = new Set();
 
-	for ( const pass of passes ) {
+	if ( around !== undefined ) {
+
+		const valid = NAME.test( around?.name ) && FORMATS[ around.format ] !== undefined && around.every >= 1
+			&& [ around.pass?.name, around.sum, around.write, around.otherwise ].every( ( text ) => typeof text === 'string' );
+
+		if ( valid === false ) return unsupported( 'what it reads around a pixel is not described' );
+
+		known.add( around.name );
+
+	}
+
+	for ( const pass of around === undefined ? passes : [ around.pass, ...passes ] ) {
 
 		if ( NAME.test( pass.name ) === false || typeof pass.compute !== 'string' ) return unsupported( 'a pass has no valid name or computation' );
 
@@ -70,7 +82,7 @@ export function modelProblem( model ) {
 
 		if ( unknown !== undefined ) return unsupported( `its pass "${ pass.name }" reads "${ unknown }", which no pass before it writes` );
 
-		if ( list( pass.targets ).length === 0 || pass.targets.length > 4 ) return unsupported( `its pass "${ pass.name }" has ${ list( pass.targets ).length } targets, not 1 to 4` );
+		if ( list( pass.targets ).length === 0 ) return unsupported( `its pass "${ pass.name }" has no targets` );
 
 		for ( const target of pass.targets ) {
 
@@ -97,19 +109,23 @@ export function modelProblem( model ) {
 
 }
 
-/** Every target of a description by its name. */
-export function targetsByName( description ) {
+/** Every texture of a description by its name. */
+export function texturesByName( { around, passes } ) {
 
-	return new Map( description.passes.flatMap( ( pass ) => pass.targets.map( ( target ) => [ target.name, target ] ) ) );
+	const small = around === undefined ? [] : [ around, ...around.pass.targets ];
+
+	return new Map( [ ...small, ...passes.flatMap( ( pass ) => pass.targets ) ].map( ( texture ) => [ texture.name, texture ] ) );
 
 }
 
 /**
- * The passes to draw. With `range: 'frame'` the pass that finds each pixel's own range is left out.
+ * The passes to draw. With `range: 'frame'` those that find what each pixel's own surroundings are, are left out.
  */
-export function passesOf( description, range ) {
+export function passesOf( { around, passes }, range ) {
 
-	return range === 'frame' ? description.passes.filter( ( pass ) => pass.name !== 'range' ) : description.passes;
+	if ( range === 'frame' ) return passes.filter( ( pass ) => pass.name !== 'range' );
+
+	return around === undefined ? passes : [ around.pass, ...passes ];
 
 }
 

@@ -3,7 +3,7 @@
 import { NormalBlending, PassNode, RenderTarget, RendererUtils, Vector2, Vector4 } from 'three/webgpu';
 import { renderGroup, uniform } from 'three/tsl';
 import { DepthRange } from './depth-range.js';
-import { deviceProblem, watchDevice } from './device.js';
+import { blendAlike, deviceProblem, drawnPasses, watchDevice } from './device.js';
 import { modelProblem } from './model.js';
 import { releasePasses } from './release.js';
 import { Stages } from './stages.js';
@@ -22,6 +22,22 @@ export function isOrderIndependent( material ) {
 
 	return material.transparent === true && material.blending === NormalBlending
 		&& ! ( material.transmission > 0 ) && material.transmissionNode?.isNode !== true && material.backdropNode?.isNode !== true;
+
+}
+
+// Draws a full-screen quad between passes, whose settings it leaves.
+function drawQuad( renderer, { target, quad } ) {
+
+	const { opaque } = renderer;
+	const draw = renderer.getRenderObjectFunction();
+
+	renderer.setRenderObjectFunction( null );
+	renderer.setMRT( null );
+	renderer.setRenderTarget( target );
+	renderer.opaque = true;
+	quad.render( renderer );
+	renderer.opaque = opaque;
+	renderer.setRenderObjectFunction( draw );
 
 }
 
@@ -83,7 +99,7 @@ export class PeelnetPassNode extends PassNode {
 
 	}
 
-	/** Where the slabs of depth come from: each pixel's own range, at one more pass, or the frame's. */
+	/** Where depths are told apart: in each pixel's own range or surroundings, at one more pass, or in the frame's. */
 	get range() {
 
 		return this._range;
@@ -183,7 +199,7 @@ export class PeelnetPassNode extends PassNode {
 
 		if ( problem !== null ) return this._fail( problem );
 
-		this._stages = new Stages( this._model, this._range, {
+		this._stages = new Stages( this._model, drawnPasses( renderer, this._model, this._range ), {
 			isGlsl: renderer.backend.isWebGPUBackend !== true,
 			depthTexture: this.renderTarget.depthTexture,
 			below: this.renderTarget.texture,
@@ -262,6 +278,7 @@ export class PeelnetPassNode extends PassNode {
 		const { sortObjects, contextNode, lighting: rendererLighting } = renderer;
 		const lighting = this.lighting ?? rendererLighting;
 		const isLit = lighting.enabled;
+		const endBlending = blendAlike( renderer );
 
 		if ( this._layers !== null ) camera.layers.mask = this._layers.mask;
 		if ( this.contextNode !== null ) renderer.contextNode = this._getContextNode( renderer );
@@ -276,7 +293,9 @@ export class PeelnetPassNode extends PassNode {
 		renderer.opaque = renderer.sortObjects = false;
 		renderer.transparent = true;
 
-		for ( const { target, node, shaded } of this._stages.passes ) {
+		for ( const { first, target, node, shaded, then } of this._stages.passes ) {
+
+			if ( first !== undefined ) drawQuad( renderer, first );
 
 			// Passes without colour need no light.
 			lighting.enabled = isLit && shaded;
@@ -284,7 +303,11 @@ export class PeelnetPassNode extends PassNode {
 			renderer.setMRT( node );
 			renderer.render( scene, camera );
 
+			if ( then !== undefined ) drawQuad( renderer, then );
+
 		}
+
+		endBlending();
 
 		lighting.enabled = isLit;
 		renderer.lighting = rendererLighting;
@@ -293,11 +316,7 @@ export class PeelnetPassNode extends PassNode {
 		RendererUtils.restoreSceneState( scene, _sceneState );
 		camera.layers.mask = mask;
 
-		renderer.setRenderObjectFunction( null );
-		renderer.setMRT( null );
-		renderer.opaque = true;
-		renderer.setRenderTarget( this._finished );
-		this._stages.quad.render( renderer );
+		drawQuad( renderer, { target: this._finished, quad: this._stages.quad } );
 
 	}
 

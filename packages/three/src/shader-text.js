@@ -1,25 +1,23 @@
 // The functions that stand between three.js and a model's text: one per pass, and one that resolves. They are written from
 // the model's description, in the language of the back end.
 
-import { FORMATS, targetsByName } from './model.js';
+import { FORMATS, texturesByName } from './model.js';
+
+const WGSL_TYPES = { float: 'f32', vec2: 'vec2f', vec3: 'vec3f', vec4: 'vec4f', mat4: 'mat4x4f' };
 
 const WGSL = {
-	vec3: 'vec3f',
-	matrix: 'mat4x4f',
-	zero: 'vec4f(0.0)',
-	function: ( name, parameters, result, body ) => `fn ${ name }(${ parameters.map( ( [ n, t ] ) => `${ n }: ${ t === 'float' ? 'f32' : `${ t }f` }` ).join( ', ' ) }) -> ${ result } {\n${ body }\n}`,
+	type: ( type ) => WGSL_TYPES[ type ],
+	function: ( name, parameters, result, body ) => `fn ${ name }(${ parameters.map( ( [ n, t ] ) => `${ n }: ${ WGSL_TYPES[ t ] }` ).join( ', ' ) }) -> ${ WGSL_TYPES[ result ] } {\n${ body }\n}`,
 	constant: ( type, name, value ) => `let ${ name } = ${ value };`,
 	expression: ( text ) => text,
 	statements: ( text ) => text
 };
 
 const GLSL = {
-	vec3: 'vec3',
-	matrix: 'mat4',
-	zero: 'vec4(0.0)',
-	function: ( name, parameters, result, body ) => `${ result.replace( /f$/, '' ) } ${ name }(${ parameters.map( ( [ n, t ] ) => `${ t } ${ n }` ).join( ', ' ) }) {\n${ body }\n}`,
+	type: ( type ) => type,
+	function: ( name, parameters, result, body ) => `${ result } ${ name }(${ parameters.map( ( [ n, t ] ) => `${ t } ${ n }` ).join( ', ' ) }) {\n${ body }\n}`,
 	constant: ( type, name, value ) => `${ type } ${ name } = ${ value };`,
-	expression: ( text ) => text.replace( /\bvec([234])f\b/g, 'vec$1' ),
+	expression: ( text ) => text.replace( /\bvec([234])f\b/g, 'vec$1' ).replace( /\bmat4x4f\b/g, 'mat4' ).replace( /\bvec2u\b/g, 'uvec2' ),
 	// WGSL's `let` has no type; GLSL needs one.
 	statements: ( text, library ) => GLSL.expression( text ).replace( /\blet (\w+) = ([^;]+);/g, ( _, name, value ) => `${ typeOf( value, library ) } ${ name } = ${ value };` )
 };
@@ -49,14 +47,16 @@ export const libraryText = ( model, isGlsl ) => isGlsl ? model.glsl : model.wgsl
 // without fragments: then slabs are cut by the frame's depth.
 function reads( language, model, names, drawn ) {
 
-	const targets = targetsByName( model.description );
+	const textures = texturesByName( model.description );
 
 	return names.map( ( name ) => {
 
-		const { channels } = FORMATS[ targets.get( name ).format ];
-		const value = drawn.has( name ) ? `read_${ name }.${ CHANNELS[ channels ] }` : language.expression( `${ VECTORS[ channels ] }f(0.0)` );
+		const { format, otherwise } = textures.get( name );
+		const { channels } = FORMATS[ format ];
+		const type = VECTORS[ channels ];
+		const value = drawn.has( name ) ? `read_${ name }.${ CHANNELS[ channels ] }` : otherwise ?? `${ language.type( type ) }(0.0)`;
 
-		return '\t' + language.constant( VECTORS[ channels ], name, value );
+		return '\t' + language.constant( type, name, value );
 
 	} );
 
@@ -64,44 +64,72 @@ function reads( language, model, names, drawn ) {
 
 const parameters = ( names, drawn ) => names.filter( ( name ) => drawn.has( name ) ).map( ( name ) => [ `read_${ name }`, 'vec4' ] );
 
+// The noise of a pixel, where a model has some.
+const noise = ( language, model, isGlsl ) => libraryText( model, isGlsl ).includes( 'peelnet_noise(' ) ? [ '\t' + language.constant( 'float', 'noise', language.expression( 'peelnet_noise(vec2u(pixel))' ) ) ] : [];
+
 /**
- * A pass as one function of the fragment. It returns a matrix: a column per target.
+ * A pass as a function of the fragment. It returns a matrix, whose columns are what four targets from the `first` on are written.
  *
  * `color` is the fragment's colour with opacity in alpha, `distance_view` its distance along the view axis, `span` what to
  * subtract from that and then the frame's PeelnetRange: one logarithm less for each fragment than near and far.
  */
-export function passText( model, pass, drawn, isGlsl ) {
+export function passText( model, pass, first, drawn, isGlsl ) {
 
 	const language = isGlsl ? GLSL : WGSL;
 	const library = libraryText( model, isGlsl );
-	const columns = pass.targets.map( ( target ) => widened( language, language.expression( target.write ), FORMATS[ target.format ].channels ) );
+	const columns = pass.targets.slice( first, first + 4 ).map( ( target ) => widened( language, language.expression( target.write ), FORMATS[ target.format ].channels ) );
 
-	while ( columns.length < 4 ) columns.push( language.zero );
+	while ( columns.length < 4 ) columns.push( `${ language.type( 'vec4' ) }(0.0)` );
 
-	return language.function( `peelnet_pass_${ pass.name }`, [ [ 'color', 'vec4' ], [ 'distance_view', 'float' ], [ 'span', 'vec4' ], ...parameters( pass.reads, drawn ) ], language.matrix, [
+	return language.function( `peelnet_pass_${ pass.name }_${ first }`, [ [ 'color', 'vec4' ], [ 'distance_view', 'float' ], [ 'span', 'vec4' ], [ 'pixel', 'vec2' ], ...parameters( pass.reads, drawn ) ], 'mat4', [
 		'\t' + language.constant( 'float', 'alpha', 'clamp(color.a, 0.0, 1.0)' ),
 		'\t' + language.constant( 'vec3', 'rgb', 'color.rgb' ),
 		'\t' + language.constant( 'float', 'z', 'distance_view - span.x' ),
 		'\t' + language.constant( 'float', 'zeta', 'peelnet_zeta_in(z, PeelnetRange(span.y, span.z, span.w))' ),
 		...reads( language, model, pass.reads, drawn ),
+		...noise( language, model, isGlsl ),
 		'\t' + language.statements( pass.compute, library ),
-		`\treturn ${ language.matrix }(${ columns.join( ', ' ) });`
+		`\treturn ${ language.type( 'mat4' ) }(${ columns.join( ', ' ) });`
 	].join( '\n' ) );
 
 }
 
 /** The resolve as one function of the opaque image and of what it reads: colour, and coverage in alpha. */
-export function resolveText( model, isGlsl ) {
+export function resolveText( model, drawn, isGlsl ) {
 
 	const language = isGlsl ? GLSL : WGSL;
 	const { resolve, resolve_reads: names } = model.description;
-	const drawn = new Set( names );
 
-	return language.function( 'peelnet_pass_resolve', [ [ 'below', 'vec4' ], ...parameters( names, drawn ) ], isGlsl ? 'vec4' : 'vec4f', [
+	return language.function( 'peelnet_pass_resolve', [ [ 'below', 'vec4' ], [ 'pixel', 'vec2' ], ...parameters( names, drawn ) ], 'vec4', [
 		'\t' + language.constant( 'vec3', 'background', 'below.rgb' ),
 		...reads( language, model, names, drawn ),
+		...noise( language, model, isGlsl ),
 		'\t' + language.constant( 'vec4', 'resolved', language.expression( resolve ) ),
-		`\treturn ${ isGlsl ? 'vec4' : 'vec4f' }(resolved.rgb, resolved.a + below.a * (1.0 - resolved.a));`
+		`\treturn ${ language.type( 'vec4' ) }(resolved.rgb, resolved.a + below.a * (1.0 - resolved.a));`
 	].join( '\n' ) );
+
+}
+
+/** What a texel adds to the sum that the small texture is made of, as a function of that sum and of what is read there. */
+export function sumText( model, isGlsl ) {
+
+	const language = isGlsl ? GLSL : WGSL;
+	const { sum, pass } = model.description.around;
+	const names = pass.targets.map( ( target ) => target.name );
+	const drawn = new Set( names );
+
+	return language.function( 'peelnet_around_sum', [ [ 'sum', 'mat4' ], ...parameters( names, drawn ) ], 'mat4', [
+		...reads( language, model, names, drawn ),
+		`\treturn sum + ${ language.expression( sum ) };`
+	].join( '\n' ) );
+
+}
+
+/** A texel of the small texture, as a function of the sum. */
+export function aroundText( model, isGlsl ) {
+
+	const language = isGlsl ? GLSL : WGSL;
+
+	return language.function( 'peelnet_around', [ [ 'sum', 'mat4' ] ], 'vec4', `\treturn ${ language.expression( model.description.around.write ) };` );
 
 }

@@ -1,12 +1,12 @@
 // A model as three.js draws it: a render target and an MRT node for every pass, and a full-screen material that resolves.
 
 import {
-	AddEquation, BlendMode, CustomBlending, FloatType, HalfFloatType, MaxEquation, NearestFilter, NoBlending, NodeMaterial,
-	OneFactor, OneMinusSrcAlphaFactor, OneMinusSrcColorFactor, QuadMesh, RGBAFormat, RGFormat, RedFormat, RenderTarget, UnsignedByteType, ZeroFactor
+	AddEquation, AlwaysDepth, BlendMode, CustomBlending, DepthTexture, FloatType, HalfFloatType, MaxEquation, NearestFilter, NoBlending, NodeMaterial,
+	LinearFilter, OneFactor, OneMinusSrcAlphaFactor, OneMinusSrcColorFactor, QuadMesh, RGBAFormat, RGFormat, RedFormat, RenderTarget, UnsignedByteType, Vector4, ZeroFactor
 } from 'three/webgpu';
-import { Fn, code, diffuseColor, ivec2, mrt, output, positionView, screenCoordinate, textureLoad, vec4, glslFn, wgslFn } from 'three/tsl';
-import { isShaded, passesOf } from './model.js';
-import { libraryText, passText, resolveText } from './shader-text.js';
+import { Fn, code, diffuseColor, glslFn, ivec2, mat4, mrt, output, positionView, renderGroup, screenCoordinate, screenSize, screenUV, texture, textureLoad, uniform, vec4, wgslFn } from 'three/tsl';
+import { isShaded } from './model.js';
+import { aroundText, libraryText, passText, resolveText, sumText } from './shader-text.js';
 
 const CHANNEL_FORMATS = { r: RedFormat, rg: RGFormat, rgba: RGBAFormat };
 const TYPES = { '8unorm': UnsignedByteType, '16float': HalfFloatType, '32float': FloatType };
@@ -32,13 +32,11 @@ function blendMode( { color, alpha } ) {
 // A target of a description. Names are prefixed: three.js gives meaning to some, such as "depth".
 const attachmentName = ( target ) => `peelnet_${ target.name }`;
 
-function renderTarget( pass, depthTexture ) {
+function renderTarget( targets, depthTexture, filter = NearestFilter ) {
 
-	const result = new RenderTarget( 1, 1, { count: pass.targets.length, samples: 0, minFilter: NearestFilter, magFilter: NearestFilter, generateMipmaps: false } );
+	const result = new RenderTarget( 1, 1, { count: targets.length, samples: 0, minFilter: filter, magFilter: filter, generateMipmaps: false, depthBuffer: depthTexture !== null, depthTexture } );
 
-	result.depthTexture = depthTexture;
-
-	pass.targets.forEach( ( target, i ) => {
+	targets.forEach( ( target, i ) => {
 
 		const [ , channels, type ] = target.format.match( /^(rgba|rg|r)(.+)$/ );
 
@@ -47,6 +45,16 @@ function renderTarget( pass, depthTexture ) {
 	} );
 
 	return result;
+
+}
+
+function fullScreen( name, properties ) {
+
+	const material = new NodeMaterial();
+
+	Object.assign( material, { name: `peelnet ${ name }`, blending: NoBlending, depthTest: false, depthWrite: false, fog: false }, properties );
+
+	return new QuadMesh( material );
 
 }
 
@@ -62,57 +70,117 @@ const straightColor = /*@__PURE__*/ Fn( ( builder ) => {
 
 } );
 
+// Sums over a texel of a full-screen pass and the eight around it.
+function sumAround( textures, add ) {
+
+	const texel = ivec2( screenCoordinate.xy );
+	const last = ivec2( screenSize ).sub( 1 );
+	let sum = mat4( vec4( 0 ), vec4( 0 ), vec4( 0 ), vec4( 0 ) );
+
+	for ( const x of [ - 1, 0, 1 ] ) for ( const y of [ - 1, 0, 1 ] ) {
+
+		const at = texel.add( ivec2( x, y ) ).clamp( ivec2( 0 ), last ).toVar();
+
+		sum = add( sum, ...textures.map( ( texture ) => textureLoad( texture, at ) ) ).toVar();
+
+	}
+
+	return sum;
+
+}
+
 /** The passes of one model, ready to draw. `span` is the uniform of the frame's range of depth. */
 export class Stages {
 
-	constructor( model, range, { isGlsl, depthTexture, below, span } ) {
+	constructor( model, passes, { isGlsl, depthTexture, below, span } ) {
 
+		const { around, resolve_reads } = model.description;
 		const library = code( libraryText( model, isGlsl ), [], isGlsl ? 'glsl' : 'wgsl' );
 		const native = ( text ) => ( isGlsl ? glslFn : wgslFn )( text, [ library ] );
-		const texel = ivec2( screenCoordinate.xy );
+		const pixel = screenCoordinate.xy;
+		const texel = ivec2( pixel );
+		const viewport = uniform( new Vector4() ).setGroup( renderGroup );
 
-		// The textures that earlier passes wrote, by the names of the description.
+		// What earlier passes wrote at the pixel, by the names of the description, and the small textures.
 		const written = new Map();
+		const small = new Map();
+		const smallDepth = new DepthTexture( 1, 1, depthTexture.type );
 
-		const texels = ( names ) => names.filter( ( name ) => written.has( name ) ).map( ( name ) => textureLoad( written.get( name ), texel ) );
+		const texels = ( names ) => names.filter( ( name ) => written.has( name ) ).map( ( name ) => written.get( name ) );
 
-		this.passes = passesOf( model.description, range ).map( ( pass ) => {
+		this.passes = passes.map( ( pass ) => {
 
-			const target = renderTarget( pass, depthTexture );
-			const result = native( passText( model, pass, written, isGlsl ) )( straightColor(), positionView.z.negate(), span, ...texels( pass.reads ) ).toVar();
-			const node = mrt( Object.fromEntries( pass.targets.map( ( description, i ) => [ attachmentName( description ), result.element( i ) ] ) ) );
+			const isSmall = pass.name === around?.pass.name;
+			const target = renderTarget( pass.targets, isSmall ? smallDepth : depthTexture );
+			const node = mrt( {} );
+			let columns;
 
 			pass.targets.forEach( ( description, i ) => {
 
 				const name = attachmentName( description );
 				const [ r, g, b, a ] = description.clear;
 
+				if ( i % 4 === 0 ) columns = native( passText( model, pass, i, written, isGlsl ) )( straightColor(), positionView.z.negate(), span, pixel, ...texels( pass.reads ) ).toVar();
+
+				node.outputNodes[ name ] = columns.element( i % 4 );
 				node.setBlendMode( name, blendMode( description ) ).setClearColor( name, 0, a );
 				node.getClearColor( name ).setRGB( r, g, b );
 
-				written.set( description.name, target.textures[ i ] );
-
 			} );
 
-			return { target, node, shaded: isShaded( pass ) };
+			const result = { target, node, shaded: isShaded( pass ), every: isSmall ? around.every : 1 };
+
+			if ( isSmall ) {
+
+				if ( small.size === 0 ) {
+
+					// Opaque objects hide here what they hide in the frame.
+					const depthNode = textureLoad( depthTexture, ivec2( screenUV.mul( viewport.zw ).add( viewport.xy ) ) ).x;
+
+					result.first = { target: renderTarget( [ around ], smallDepth ), quad: fullScreen( 'depth', { fragmentNode: vec4( 0 ), depthNode, depthTest: true, depthWrite: true, depthFunc: AlwaysDepth } ) };
+
+				}
+
+				pass.targets.forEach( ( { name }, i ) => small.set( name, target.textures[ i ] ) );
+
+				if ( small.size === around.pass.targets.length ) {
+
+					const textures = around.pass.targets.map( ( { name } ) => small.get( name ) );
+
+					result.then = { target: renderTarget( [ around ], null, LinearFilter ), quad: fullScreen( 'around', { fragmentNode: native( aroundText( model, isGlsl ) )( sumAround( textures, native( sumText( model, isGlsl ) ) ) ) } ) };
+					written.set( around.name, texture( result.then.target.texture, pixel.sub( viewport.xy ).div( viewport.zw ) ) );
+
+				}
+
+			} else {
+
+				pass.targets.forEach( ( { name }, i ) => written.set( name, textureLoad( target.textures[ i ], texel ) ) );
+
+			}
+
+			return result;
 
 		} );
 
-		const material = new NodeMaterial();
-
-		material.name = 'peelnet resolve';
-		material.fragmentNode = native( resolveText( model, isGlsl ) )( textureLoad( below, texel ), ...texels( model.description.resolve_reads ) );
-		material.blending = NoBlending;
-		material.depthTest = material.depthWrite = material.fog = false;
-
-		this.quad = new QuadMesh( material );
+		this.quad = fullScreen( 'resolve', { fragmentNode: native( resolveText( model, written, isGlsl ) )( textureLoad( below, texel ), pixel, ...texels( resolve_reads ) ) } );
+		this._viewport = viewport.value;
 
 	}
 
-	/** Takes size, viewport and scissor of the target of the opaque objects over. */
+	/** Takes size, viewport and scissor of the target of the opaque objects over. A small target has the viewport's. */
 	setSize( { width, height, viewport, scissor, scissorTest } ) {
 
-		for ( const { target } of this.passes ) {
+		this._viewport.copy( viewport );
+
+		for ( const { first, target, every, then } of this.passes ) {
+
+			if ( every > 1 ) {
+
+				for ( const small of [ first?.target, target, then?.target ] ) small?.setSize( Math.ceil( viewport.z / every ), Math.ceil( viewport.w / every ) );
+
+				continue;
+
+			}
 
 			target.setSize( width, height );
 			target.viewport.copy( viewport );
@@ -125,11 +193,12 @@ export class Stages {
 
 	dispose() {
 
-		for ( const { target } of this.passes ) {
+		for ( const { first, target, every, then } of this.passes ) {
 
 			// The depth texture belongs to the opaque pass.
-			target.depthTexture = null;
-			target.dispose();
+			if ( every === 1 ) target.depthTexture = null;
+
+			for ( const made of [ target, first?.target, first?.quad.material, then?.target, then?.quad.material ] ) made?.dispose();
 
 		}
 

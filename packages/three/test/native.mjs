@@ -13,7 +13,7 @@ const MOST = 1;
 
 const BUILT = join( PACKAGE, '../../target/release/peelnet' );
 const PEELNET = process.env.PEELNET_BINARY ?? ( existsSync( BUILT ) ? BUILT : 'peelnet' );
-const METHODS = { exact: 'abuffer', small: 'deep-small', medium: 'deep-medium', large: 'deep-large', 'anchored-small': 'deep-anchored-small' };
+const METHODS = { exact: 'abuffer', small: 'deep-small', medium: 'deep-medium', large: 'deep-large', 'anchored-small': 'deep-anchored-small', one: 'deep-one' };
 
 const browser = await open();
 const folder = mkdtempSync( join( tmpdir(), 'peelnet-native-' ) );

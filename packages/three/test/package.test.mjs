@@ -48,7 +48,7 @@ async function bundled( code, external = [ 'three' ] ) {
 test( 'the tarball holds the package and nothing else', () => {
 
 	assert.deepEqual( readdirSync( installed ).sort(), [ 'LICENSE-APACHE', 'LICENSE-MIT', 'README.md', 'models', 'package.json', 'src' ] );
-	assert.deepEqual( readdirSync( join( installed, 'models' ) ).filter( ( name ) => name.endsWith( '.js' ) ).sort(), [ 'anchored-medium.js', 'anchored-small.js', 'large.js', 'medium.js', 'small.js' ] );
+	assert.deepEqual( readdirSync( join( installed, 'models' ) ).filter( ( name ) => name.endsWith( '.js' ) ).sort(), [ 'anchored-medium.js', 'anchored-small.js', 'large.js', 'medium.js', 'one.js', 'small.js' ] );
 
 } );
 

@@ -1,10 +1,9 @@
 // One pass: the exported text's sums of each fragment, and the nearest fragment with its colour.
 // Variants: none | wide | frame | wide frame
 @if(!frame) import package::helpers::one::{corners_of, quantiles_of};
-import package::helpers::one::noise_at;
 import package::helpers::slabs::zeta_of;
 @if(frame) import package::learned::weight::peelnet_even;
-import package::learned::weight::peelnet_statistics;
+import package::learned::weight::{peelnet_noise, peelnet_statistics};
 @if(!frame) import package::scene::camera::camera;
 import package::scene::shade::shade;
 import package::scene::surface::Surface;
@@ -37,7 +36,7 @@ fn fragment_main(surface: Surface) -> Sums {
     @else let around = mix(above, below, corners.part.y);
     // Not multiplied by the opacity.
     let rgb = color.rgb / max(color.a, 1e-6);
-    let s = peelnet_statistics(color.a, rgb, zeta_of(surface.depth_linear), around, noise_at(pixel));
+    let s = peelnet_statistics(color.a, rgb, zeta_of(surface.depth_linear), around, peelnet_noise(pixel));
     @if(wide) return Sums(s.sum_a, s.sum_b, s.sum_c, s.sum_d, s.sum_e, s.sum_f, s.absorbances, s.absorbances_back);
     @else return Sums(s.sum_a, s.sum_b, s.sum_c, s.absorbances);
 }

@@ -1,7 +1,7 @@
 // One pass, between its passes: the quantiles of each tile, of what is seen in the nine around it.
 // Loops: 2: three rows, and three columns.
 import package::helpers::one::stored;
-import package::learned::weight::{PeelnetTile, peelnet_quantiles, peelnet_tile_seen};
+import package::learned::weight::{peelnet_quantiles, peelnet_tile_seen};
 
 // Width and height of the frame.
 @group(0) @binding(0) var<uniform> frame: vec4u;
@@ -21,21 +21,17 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: ve
         return;
     }
     let tile = vec2i(vec2u(index % count.x, index / count.x));
-    var sum = PeelnetTile(vec4f(0.0), vec4f(0.0), vec4f(0.0), vec4f(0.0));
+    var sum = mat4x4f();
     for (var y = -1; y <= 1; y++) {
         for (var x = -1; x <= 1; x++) {
             let at = vec2u(clamp(tile + vec2i(x, y), vec2i(0), vec2i(count) - 1));
-            let bins = PeelnetTile(
+            let bins = mat4x4f(
                 textureLoad(bins_a, at, 0),
                 textureLoad(bins_b, at, 0),
                 textureLoad(bins_c, at, 0),
                 vec4f(textureLoad(bins_d, at, 0).xy, textureLoad(bins_e, at, 0).xy),
             );
-            let seen = peelnet_tile_seen(bins, textureLoad(nearest, at, 0).x);
-            sum.a += seen.a;
-            sum.b += seen.b;
-            sum.c += seen.c;
-            sum.d += seen.d;
+            sum += peelnet_tile_seen(bins, textureLoad(nearest, at, 0).x);
         }
     }
     quantiles[index] = stored(peelnet_quantiles(sum));

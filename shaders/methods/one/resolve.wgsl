@@ -1,8 +1,8 @@
 // One pass: the exported text's resolve; its colour over black alone where light takes a colour.
 // Variants: none | wide | frame | wide frame | tinted | wide tinted | frame tinted | wide frame tinted
 @if(!frame) import package::helpers::one::{corners_of, quantiles_of};
-import package::helpers::one::noise_at;
 @if(frame) import package::learned::weight::peelnet_even;
+import package::learned::weight::peelnet_noise;
 @if(tinted) import package::learned::weight::peelnet_pixel;
 @if(!tinted) import package::learned::weight::peelnet_resolve;
 
@@ -27,7 +27,7 @@ fn fragment_main(@builtin(position) position: vec4f) -> @location(0) vec4f {
     @if(!frame) let below = mix(quantiles_of(quantiles[corners.below.x]), quantiles_of(quantiles[corners.below.y]), corners.part.x);
     @if(frame) let around = peelnet_even();
     @else let around = mix(above, below, corners.part.y);
-    let noise = noise_at(pixel);
+    let noise = peelnet_noise(pixel);
     let a = textureLoad(sum_a, pixel, 0);
     let b = textureLoad(sum_b, pixel, 0);
     let c = textureLoad(sum_c, pixel, 0);

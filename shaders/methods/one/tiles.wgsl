@@ -24,5 +24,5 @@ fn fragment_main(surface: Surface) -> Tile {
     let alpha = opacity(surface);
     let zeta = zeta_of(surface.depth_linear);
     let bins = peelnet_tile_bins(alpha, zeta);
-    return Tile(bins.a, bins.b, bins.c, bins.d.xy, bins.d.zw, peelnet_tile_nearest(alpha, zeta));
+    return Tile(bins[0], bins[1], bins[2], bins[3].xy, bins[3].zw, peelnet_tile_nearest(alpha, zeta));
 }

@@ -91,6 +91,7 @@ static ONE_SUM: Surroundings = Surroundings {
         "learned::composite",
     ],
     before: ZETA,
+    around: None,
     passes: &[
         STATISTICS,
         pass(

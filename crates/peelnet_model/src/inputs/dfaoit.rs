@@ -72,6 +72,7 @@ static SURROUNDINGS: Surroundings = Surroundings {
     modules: &["learned::dfaoit"],
     before: "Composite the two nearest fragments of each pixel exactly, by depth peeling or insertion, into front: premultiplied colour, \
         and transmittance in alpha. The pass below draws them again, with front = true.",
+    around: None,
     passes: PASSES,
     resolve: "peelnet_resolve(front, behind, all, count, background)",
 };

@@ -20,5 +20,5 @@ pub use network_inputs::{
 pub use nmt::*;
 pub use one::*;
 pub use slabs::*;
-pub use surroundings::{Blend, Pass, Surroundings, Target, Value, ValueKind};
+pub use surroundings::{Blend, Pass, SmallTexture, Surroundings, Target, Value, ValueKind};
 pub use thesis::*;

@@ -62,6 +62,7 @@ static SURROUNDINGS: Surroundings = Surroundings {
         "learned::composite",
     ],
     before: ZETA,
+    around: None,
     passes: PASSES,
     resolve: "peelnet_resolve(sums, totals.x, background)",
 };

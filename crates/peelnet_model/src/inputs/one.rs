@@ -157,12 +157,37 @@ const BEFORE: &str = concat!(
     zeta!(),
     " Where boxes show that nothing lies between two depths, use peelnet_cut(zeta, gaps) for zeta: it leaves up to two such gaps out. \
     quantiles says where among the depths around the pixel most is seen: peelnet_even() where nothing is known but near and far, with several \
-    times the error. To know it, draw depth and opacity alone at an eighth of the width and the height, the middles of its pixels 8 x + 4 and \
-    8 y + 4 of the frame: peelnet_tile_bins into 8-bit targets that add (three of four channels and two of two stay within 32 bytes a sample) and peelnet_tile_nearest into one r16float target that keeps \
-    the most, cleared to 0 and to -65504; then sum peelnet_tile_seen of the nine pixels around each, group by group of four bins, and keep \
-    peelnet_quantiles of the sums. Read it with linear interpolation. noise is any number in 0 .. 1 that is the same for all of a pixel: \
-    it hides the steps of what is kept of the nearest fragment; 0.5 where that does not matter."
+    times the error. noise is any number in 0 .. 1 that is the same for all of a pixel, such as peelnet_noise(pixel): it hides the steps of what is kept \
+    of the nearest fragment; 0.5 where that does not matter."
 );
+
+static AROUND: SmallTexture = SmallTexture {
+    name: "quantiles",
+    format: "rgba8unorm",
+    every: 8,
+    pass: pass(
+        "around",
+        &[],
+        value("bins", ValueKind::Matrix, "peelnet_tile_bins(alpha, zeta)"),
+        &[
+            sum("bins_a", "rgba8unorm", "bins[0]"),
+            sum("bins_b", "rgba8unorm", "bins[1]"),
+            sum("bins_c", "rgba8unorm", "bins[2]"),
+            // In two: four channels of 8 bits count as eight bytes of the 32 that a pass may write, two as two.
+            sum("bins_d", "rg8unorm", "bins[3].xy"),
+            sum("bins_e", "rg8unorm", "bins[3].zw"),
+            most(
+                "tile_nearest",
+                "r16float",
+                LEAST,
+                "peelnet_tile_nearest(alpha, zeta)",
+            ),
+        ],
+    ),
+    sum: "peelnet_tile_seen(mat4x4f(bins_a, bins_b, bins_c, vec4f(bins_d, bins_e)), tile_nearest)",
+    write: "peelnet_quantiles(sum)",
+    otherwise: "peelnet_even()",
+};
 
 const fn surroundings(
     modules: &'static [&'static str],
@@ -173,6 +198,7 @@ const fn surroundings(
         parameters: "ahead: PeelnetAhead",
         modules,
         before: BEFORE,
+        around: Some(&AROUND),
         passes,
         resolve,
     }
@@ -193,7 +219,7 @@ static ONE: Surroundings = surroundings(
     ],
     &[pass(
         "gather",
-        &[],
+        &["quantiles"],
         statistics("peelnet_statistics(alpha, rgb, zeta, quantiles, noise)"),
         &[
             kept("sum_a", "s.sum_a"),
@@ -215,7 +241,7 @@ static WIDE: Surroundings = surroundings(
     ],
     &[pass(
         "gather",
-        &[],
+        &["quantiles"],
         statistics("peelnet_statistics(alpha, rgb, zeta, quantiles, noise)"),
         &[
             kept("sum_a", "s.sum_a"),

@@ -166,6 +166,7 @@ static SMALL: Surroundings = Surroundings {
     parameters: "between: PeelnetBetween",
     modules: &modules("learned::slabs_small"),
     before: ZETA_WITHOUT_GAPS,
+    around: None,
     passes: &passes(
         &[ABSORBANCES, NEAREST, sum("firsts", "rg16float", "s.firsts")],
         &[

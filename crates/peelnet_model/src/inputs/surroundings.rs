@@ -13,6 +13,8 @@ pub struct Surroundings {
     pub modules: &'static [&'static str],
     /// What comes before the passes.
     pub before: &'static str,
+    /// What the passes read of each pixel's surroundings.
+    pub around: Option<&'static SmallTexture>,
     /// The passes, in order.
     pub passes: &'static [Pass],
     /// The call that resolves each pixel.
@@ -55,6 +57,8 @@ pub enum ValueKind {
     Number,
     /// Two numbers.
     Pair,
+    /// Four columns of four numbers.
+    Matrix,
     /// The text's `PeelnetBins`.
     Bins,
     /// The text's `PeelnetStatistics`.
@@ -90,12 +94,31 @@ impl Serialize for Value {
 pub struct Pass {
     /// Its name.
     pub name: &'static str,
-    /// The targets of earlier passes that each fragment reads at its own pixel: a number, two or four, as its format has channels.
+    /// The targets of earlier passes, and the small texture, that each fragment reads at its own pixel: a number, two or four, as its format has channels.
     pub reads: &'static [&'static str],
     /// What each fragment computes first, as a WGSL statement in files.
     pub compute: Option<Value>,
     /// Its attachments.
     pub targets: &'static [Target],
+}
+
+/// A small texture of what surrounds each pixel, drawn before the passes, which read it with linear interpolation.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct SmallTexture {
+    /// Its name in the calls.
+    pub name: &'static str,
+    /// WebGPU's name of its least format.
+    pub format: &'static str,
+    /// It has one texel for so many pixels of the frame, across and down.
+    pub every: u32,
+    /// Drawn at its size, into other targets.
+    pub pass: Pass,
+    /// What to sum of those targets over the 3 × 3 texels around each.
+    pub sum: &'static str,
+    /// A texel's value, of `sum`.
+    pub write: &'static str,
+    /// Stands for it where it is not drawn.
+    pub otherwise: &'static str,
 }
 
 /// What levels are cleared to.

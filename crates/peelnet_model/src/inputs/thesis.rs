@@ -66,6 +66,7 @@ static SURROUNDINGS: Surroundings = Surroundings {
     parameters: "linear_depth: f32, statistics: vec2f",
     modules: &["learned::thesis", "learned::composite"],
     before: "z is the distance along the view axis, in the unit of the scenes that the network was trained on.",
+    around: None,
     passes: PASSES,
     resolve: "peelnet_resolve(sums, transmittance, background)",
 };

@@ -48,9 +48,9 @@ export async function compared( backend, { scene: name = 'fifty', camera: camera
  * Times of a frame, each method in turn for several rounds, so that a machine that slows down slows all of them. Every ratio is
  * of one round; the median of the rounds is returned.
  */
-export async function timed( backend, { scene: name = 'fifty', models = [ 'medium' ], ranges = [ 'pixel', 'frame' ], rounds = 7, frames = 5, width = 640, height = 480 } ) {
+export async function timed( backend, { scene: name = 'fifty', models = [ 'medium' ], ranges = [ 'pixel', 'frame' ], rounds = 7, frames = 5, width = 640, height = 480, requiredLimits = {} } ) {
 
-	const renderer = await makeRenderer( backend );
+	const renderer = await makeRenderer( backend, { requiredLimits } );
 
 	renderer.setSize( width, height );
 
@@ -102,7 +102,7 @@ export async function timed( backend, { scene: name = 'fifty', models = [ 'mediu
 }
 
 /** The colour of a pixel with the fragments of an export's self-test, as cards that fill the view. */
-export async function fourFragments( backend, { name, pixel } ) {
+export async function fourFragments( backend, { name, range, pixel } ) {
 
 	const renderer = await makeRenderer( backend );
 	const scene = new THREE.Scene();
@@ -121,7 +121,7 @@ export async function fourFragments( backend, { name, pixel } ) {
 
 	}
 
-	const { image } = await drawn( renderer, scene, camera, { model: await modelOf( name ) } );
+	const { image } = await drawn( renderer, scene, camera, { model: await modelOf( name ), range } );
 	const at = 4 * ( HEIGHT / 2 * WIDTH + WIDTH / 2 );
 
 	return [ ...image.slice( at, at + 3 ) ];
@@ -129,12 +129,12 @@ export async function fourFragments( backend, { name, pixel } ) {
 }
 
 /** How far the first frame is from the third: a target's first drawing must not clear what others share. */
-export async function firstFrame( backend ) {
+export async function firstFrame( backend, { model: name } ) {
 
 	const renderer = await makeRenderer( backend );
 	const scene = scenes.fifty();
 	const camera = scenes.perspective( aspect );
-	const model = await modelOf( 'medium' );
+	const model = await modelOf( name );
 	const first = await drawn( renderer, scene, camera, { model }, 1 );
 	const third = await drawn( renderer, scene, camera, { model }, 3 );
 
@@ -143,12 +143,12 @@ export async function firstFrame( backend ) {
 }
 
 /** How far the image is from that of the same objects in the opposite order, and from one drawn with three.js's sorting off. */
-export async function order( backend ) {
+export async function order( backend, { model: name } ) {
 
 	const renderer = await makeRenderer( backend );
 	const scene = scenes.fifty();
 	const camera = scenes.perspective( aspect );
-	const model = await modelOf( 'medium' );
+	const model = await modelOf( name );
 	const one = await drawn( renderer, scene, camera, { model } );
 
 	scene.children.reverse();
@@ -234,7 +234,7 @@ export async function premultiplied( backend ) {
 }
 
 /** A pass with a viewport and a scissor, of one card, which sorting draws right, too. */
-export async function viewport( backend ) {
+export async function viewport( backend, { model: name } ) {
 
 	const renderer = await makeRenderer( backend );
 	const scene = scenes.twoCards();
@@ -255,7 +255,7 @@ export async function viewport( backend ) {
 	const sorted = await image( pass( scene, camera ) );
 	const whole = await imageOf( renderer, pass( scene, camera ) );
 
-	return { same: errors( await image( peelnetPass( scene, camera, { model: await modelOf( 'medium' ) } ) ), sorted ), whole: errors( whole, sorted ) };
+	return { same: errors( await image( peelnetPass( scene, camera, { model: await modelOf( name ) } ) ), sorted ), whole: errors( whole, sorted ) };
 
 }
 
@@ -395,12 +395,12 @@ function counted( renderer ) {
 }
 
 /** What frames make on the device after the first ones, with objects and camera moving. */
-export async function steady( backend ) {
+export async function steady( backend, { model: name } ) {
 
 	const renderer = await makeRenderer( backend );
 	const scene = scenes.mixed();
 	const camera = scenes.perspective( aspect );
-	const pipeline = new THREE.RenderPipeline( renderer, peelnetPass( scene, camera, { model: await modelOf( 'medium' ) } ) );
+	const pipeline = new THREE.RenderPipeline( renderer, peelnetPass( scene, camera, { model: await modelOf( name ) } ) );
 	const frame = ( i ) => {
 
 		scene.children[ 10 ].position.x = Math.sin( i );
@@ -438,7 +438,7 @@ export async function memory( backend ) {
 
 	const withPass = now();
 
-	for ( const name of [ 'small', 'large', 'medium' ] ) {
+	for ( const name of [ 'small', 'one', 'medium' ] ) {
 
 		node.model = await modelOf( name );
 		await imageOf( renderer, node );

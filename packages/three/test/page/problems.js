@@ -2,7 +2,7 @@
 
 import { pass } from 'three/tsl';
 import { peelnetPass } from '@peelnet/three';
-import { aspect, drawn, modelOf } from './helpers.js';
+import { aspect, drawn, modelOf, replaced } from './helpers.js';
 import { errors, imageOf, makeRenderer, peeled } from './measure.js';
 import * as scenes from './scenes.js';
 
@@ -56,14 +56,7 @@ export async function bad( backend ) {
 	const { backend: device } = renderer;
 	const lacking = async ( key, object, name, value ) => {
 
-		const kept = Object.getOwnPropertyDescriptor( object, name );
-
-		Object.defineProperty( object, name, { value, configurable: true, writable: true } );
-
-		const { image, problems, node } = await drawn( renderer, scene, camera, { model: good } );
-
-		if ( kept === undefined ) delete object[ name ];
-		else Object.defineProperty( object, name, kept );
+		const { image, problems, node } = await replaced( object, name, value, () => drawn( renderer, scene, camera, { model: good } ) );
 
 		result[ key ] = { problems, ...errors( image, sorted ) };
 		node.dispose();
@@ -73,11 +66,31 @@ export async function bad( backend ) {
 	if ( backend === 'webgpu' ) {
 
 		await lacking( 'compatibility', device, 'compatibilityMode', true );
-		await lacking( 'bytes', device.device, 'limits', { maxColorAttachments: 8, maxColorAttachmentBytesPerSample: 16 } );
+		await lacking( 'bytes', device.device, 'limits', { maxColorAttachments: 8, maxColorAttachmentBytesPerSample: 4 } );
 
-	} else {
+	}
 
-		await lacking( 'indexed blends', device, 'drawBuffersIndexedExt', null );
+	return result;
+
+}
+
+/** Passes that are drawn in parts, because the device cannot blend or hold their targets at once, against whole ones. */
+export async function parts( backend ) {
+
+	const renderer = await makeRenderer( backend, backend === 'webgpu' ? { requiredLimits: { maxColorAttachmentBytesPerSample: 40 } } : {} );
+	const { backend: device } = renderer;
+	const scene = scenes.fifty();
+	const camera = scenes.perspective( aspect );
+	const lack = backend === 'webgpu' ? [ device.device, 'limits', { maxColorAttachments: 8, maxColorAttachmentBytesPerSample: 32 } ] : [ device, 'drawBuffersIndexedExt', null ];
+	const result = {};
+
+	for ( const name of [ 'medium', 'one' ] ) {
+
+		const draw = async () => drawn( renderer, scene, camera, { model: await modelOf( name ) } );
+		const whole = await draw();
+		const inParts = await replaced( ...lack, draw );
+
+		result[ name ] = { ...errors( inParts.image, whole.image ), passes: [ whole, inParts ].map( ( { node } ) => node._stages.passes.length ), problems: [ ...whole.problems, ...inParts.problems ] };
 
 	}
 
