@@ -111,6 +111,7 @@ fn a_folder_of_results_is_of_one_run() {
     std::fs::remove_dir_all(folder.at("b/images")).unwrap();
     folder.prints("bench redraw --out b");
     let results = String::from_utf8(folder.read("b/results.json")).unwrap();
+    let long = "x".repeat(70_000);
     for (from, to, why) in [
         ("\"mse_linear\": ", "\"mse_linear\": -", "`mse_linear` is -"),
         (
@@ -118,6 +119,7 @@ fn a_folder_of_results_is_of_one_run() {
             "abuffer",
             "is a second one of abuffer on view 0 of two",
         ),
+        ("wboit-eq9", &long, "`method` has 70000 characters"),
     ] {
         folder.write("b/results.json", results.replace(from, to));
         for line in ["bench redraw --out b", "recommend two.toml --results b"] {

@@ -18,6 +18,6 @@ pub use output::{
     identity, is_remote, moving, remove_replaced, remove_unfinished, temporary, write_whole,
 };
 pub use text::{
-    MAX_SHOWN, counted, error_line, hex, known_names, one_line, printable, printable_json,
-    printable_lines, shown, thousands,
+    MAX_SHOWN, check_name, counted, error_line, hex, known_names, one_line, printable,
+    printable_json, printable_lines, shown, thousands,
 };
