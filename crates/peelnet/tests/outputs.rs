@@ -82,7 +82,14 @@ fn a_folder_of_results_is_of_one_run() {
     let folder = Folder::new(&[("two.toml", SCENE)]);
     let bench = "bench two.toml --methods wboit-eq9 --frames 0 --size 8x8 --out b";
     folder.prints(bench);
+    // A key of the user's own stays.
+    let results = String::from_utf8(folder.read("b/results.json")).unwrap();
+    let own = results.replace("\n  \"command\"", "\n  \"note\": 1,\n  \"command\"");
+    assert_ne!(own, results);
+    folder.write("b/results.json", &own);
     folder.prints("bench redraw --out b");
+    assert_eq!(folder.read("b/results.json"), own.as_bytes());
+    folder.write("b/results.json", results);
     let held = peelnet_train::OutputLock::take(&folder.at("b/.peelnet")).unwrap();
     for line in [
         bench,

@@ -60,6 +60,8 @@ fn compare(context: &Context<'_>, args: &CompareArgs) -> Result<(), Failure> {
     print(context, &results)
 }
 
+const RESULTS: &str = "results.json";
+
 /// Draws older results again. That ends no interrupted run: its finished views stay.
 fn redraw(context: &Context<'_>, out: &Path) -> Result<(), Failure> {
     let mut outputs = context.results::<Bench>(&[], out)?;
@@ -67,7 +69,8 @@ fn redraw(context: &Context<'_>, out: &Path) -> Result<(), Failure> {
     let _begun = context.begin_in(out, outputs, &[])?;
     let results = read(out)?;
     check_pictures(&results.measured.rows, out)?;
-    results.write(out)?;
+    // What else a user put into that file stays.
+    results.write_but(RESULTS, out)?;
     print(context, &results)
 }
 
@@ -231,7 +234,7 @@ fn finished(
     folder: &Path,
     settings: &str,
 ) -> Result<Option<Results<Bench>>, Failure> {
-    let file = folder.join("results.json");
+    let file = folder.join(RESULTS);
     if Partial::is_in(folder) {
         return Ok(None);
     }
