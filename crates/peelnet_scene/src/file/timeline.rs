@@ -4,7 +4,11 @@ use super::{
     loader::Loader,
     raw::{RawObject, RawState},
 };
-use crate::{error::SceneError, material::Material};
+use crate::{
+    budget::{self, MAX_CHANGES},
+    error::SceneError,
+    material::Material,
+};
 use peelnet_core::files::printable;
 use std::collections::HashMap;
 
@@ -64,6 +68,11 @@ impl Snapshot {
                 numbers.entry(name.clone()).or_default().push(i);
             }
         }
+        let changes = states.iter().flat_map(|state| &state.object);
+        let changed = changes.filter_map(|change| numbers.get(&change.name));
+        let count = changed.map(|objects| objects.len() as u64).sum();
+        budget::check(count, MAX_CHANGES, "changes of objects")
+            .map_err(|e| loader.value("timeline", e))?;
         let any = Material::default_with(loader.files.lighting);
         for (i, state) in states.iter().enumerate() {
             let field = format!("timeline {}", i + 1);

@@ -149,15 +149,19 @@ fn small_files_cannot_ask_for_endless_memory() {
     ));
     let instances = scatter(100_000, "shape = 'sphere', triangles = 20_000");
     let displaced = object("shape = 'sphere', triangles = 100_000")
-        + "material = { displacement_map = 'white.png', displacement_scale = 1, displacement_level = 9 }";
+        + "material = { displacement_map = 'white.png', displacement_scale = 1, displacement_level = 4 }";
+    let state = |time| format!("[[timeline]]\ntime = {time}\n[[timeline.object]]\nname = 'a'\n");
+    let states = (0..101).map(state).collect::<String>();
+    let states = (object("shape = 'quad'") + "name = 'a'\n").repeat(10_000) + &states;
     for (text, words) in [
         (quads, "scatter 2.count & 999500 & 1000 before & 1000000"),
         (huge, "object 2.mesh & 60000000 & 50000000"),
         (lathe, "object 1.mesh & 10002 & 10000"),
         (instances, "object & triangles & 1431655765"),
+        (states, "timeline & 1010000 changes & 1000000"),
         (
             displaced,
-            "object 1.material.displacement_map & displacement_level of 4 or less",
+            "object 1.material.displacement_map & displacement_level of 3 or less",
         ),
     ] {
         assert_refused(load(&text), words);
