@@ -170,6 +170,24 @@ fn a_pipe_without_a_reader_is_an_error() {
     assert!(said.contains("pipe"), "{said}");
 }
 
+/// A program that asks for JSON gets it, or an error.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_closed_stdout_is_an_error_of_json() {
+    let folder = Folder::new(&[]);
+    folder.prints("extract --synthetic 3000 --out d");
+    let line = format!("'{}' inspect d --json >&-", env!("CARGO_BIN_EXE_peelnet"));
+    let mut shell = std::process::Command::new("sh");
+    let output = shell
+        .args(["-c", &line])
+        .current_dir(folder.path())
+        .output();
+    let output = output.unwrap();
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    assert!(said.contains("stdout is closed"), "{said}");
+}
+
 /// Until a signal has ended a command that nobody waits for: a second is promised, and machines that run tests are slow.
 #[cfg(unix)]
 const SIGNAL_DEADLINE: std::time::Duration = std::time::Duration::from_secs(5);
