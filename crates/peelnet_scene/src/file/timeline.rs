@@ -10,7 +10,7 @@ use crate::{
     material::Material,
 };
 use peelnet_core::files::printable;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 pub(super) const NO_TIMELINE: &str = "is missing: leave the time out, or add [[timeline]] states";
 
@@ -76,7 +76,12 @@ impl Snapshot {
         let any = Material::default_with(loader.files.lighting);
         for (i, state) in states.iter().enumerate() {
             let field = format!("timeline {}", i + 1);
+            let mut named = HashSet::new();
             for change in &state.object {
+                if !named.insert(&change.name) {
+                    let message = format!("names '{}' twice", printable(&change.name));
+                    return Err(loader.value(&format!("{field}.object.name"), message));
+                }
                 let Some(numbers) = numbers.get(&change.name) else {
                     let message = format!("no [[object]] is named '{}'", printable(&change.name));
                     return Err(loader.value(&format!("{field}.object.name"), message));

@@ -48,6 +48,7 @@ fov_y = 1e-40 => camera.fov_y & 0.01 … 179
 [[light]] ; position = [1, 1, 1] ; color = [255, 0, 0] => light 1: color & 255 & 0 … 1 & divide
 [[timeline]] ; time = 1 ; [[timeline]] ; time = 1 => timeline 2.time & later
 [[timeline]] ; time = 1 ; [[timeline.object]] ; name = 'x' => timeline 1.object.name & 'x'
+[[object]] ; name = 'x' ; mesh = { shape = 'box' } ; [[timeline]] ; time = 1 ; [[timeline.object]] ; name = 'x' ; [[timeline.object]] ; name = 'x' => timeline 1.object.name & twice
 [[object]] ; mesh = { shape = 'sphere', radius = 3e38 } => object 1.mesh & radius
 [[object]] ; mesh = { shape = 'sphere', radius = 1e-30 } => object 1.mesh & radius
 [[object]] ; mesh = { shape = 'sphere', radius = -2 } => object 1.mesh & positive
