@@ -437,7 +437,7 @@ impl<'a> Passes<'a> {
             }
         }
         gpu.check_limit(
-            &format!("{}: pass {}", b.spec, pass.label),
+            format!("{}: pass {}", b.spec, pass.label),
             u64::from(self.sample_bytes(pass)),
             u64::from(gpu.limits.max_color_attachment_bytes_per_sample),
             "bytes a sample",
