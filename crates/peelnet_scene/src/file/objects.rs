@@ -117,6 +117,10 @@ pub(super) fn scatter(
     eye: Vec3,
 ) -> Result<Vec<Object>, SceneError> {
     scatter.check().map_err(|e| loader.fault(field, e))?;
+    if scatter.jitter != 0.0 && scatter.grid.is_none() {
+        let what = format!("{field}.jitter: changes nothing without a grid; leave it out");
+        loader.files.warn(loader.path, &what);
+    }
     let map = scatter.color_map.as_ref();
     let map = map.map(|map| loader.map(map, "color_map", field));
     let map = map.transpose()?;

@@ -470,12 +470,12 @@ fn materials_of_files_in_scenes() {
 /// What belongs to a map, where there is none.
 #[test]
 fn values_without_their_maps_are_reported() {
-    let object = "[[object]]\nmesh = { shape = 'quad' }\nmaterial = { normal_scale = 2, occlusion_strength = 1, wrap = 'clamp' }\n";
+    let object = "[[object]]\nmesh = { shape = 'quad' }\nmaterial = { normal_scale = 2, occlusion_strength = 1, wrap = 'clamp' }\n\
+        [[scatter]]\nmesh = { shape = 'quad' }\ncount = 1\nmin = [0, 0, 0]\nmax = [1, 1, 1]\njitter = 1\n";
     let text = format!("{CAMERA}{object}");
     let scene = load_files(&[("s.toml", text.as_bytes())]).unwrap();
     let warnings = scene.warnings.join("\n");
-    let words =
-        "material.normal_scale: changes nothing & material.occlusion_strength: & material.wrap: ";
+    let words = "material.normal_scale: changes nothing & material.occlusion_strength: & material.wrap: & scatter 1.jitter: changes nothing";
     assert_says(&warnings, words);
     let text = text.replace(
         "wrap =",
