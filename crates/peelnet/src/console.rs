@@ -2,7 +2,7 @@
 //! reaches a terminal unescaped.
 
 use peelnet::Failure;
-use peelnet_core::files::{printable_json, printable_lines};
+use peelnet_core::files::{printable_json, printable_lines, to_stdout};
 use std::io::{self, IsTerminal as _, Write as _};
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -52,6 +52,9 @@ impl Console {
         let text = text.trim_end();
         let written = if STDOUT_IS_A_FILE.load(Ordering::Relaxed) {
             writeln!(io::stderr(), "{text}")
+        } else if self.json {
+            // A program waits for it, so a stdout that is closed is an error.
+            to_stdout(format!("{text}\n").as_bytes())
         } else {
             let mut out = io::stdout().lock();
             writeln!(out, "{text}").and_then(|()| out.flush())

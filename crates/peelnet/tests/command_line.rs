@@ -372,6 +372,11 @@ fn inspect_counts_many_layers_in_a_small_frame() {
         assert_eq!(answer["counted_at"], frame, "{line}");
         assert_eq!(answer["max_layers"], layers, "{line}");
     }
+    // Each of so many parts is a draw.
+    let scatter = "[[scatter]]\ncount = 32769\nmesh = { shape = \"quad\" }\nmin = [0, 0, 0]\nmax = [0, 0, 0]\n";
+    folder.write("parts.toml", format!("{camera}{scatter}"));
+    let said = folder.says("inspect parts.toml", 0);
+    assert!(said.contains("the scene has 32,769 parts"), "{said}");
 }
 
 /// The shipped vase: each layer highlighted at a time of its own, what there is not is refused, and `inspect` and the measurement of

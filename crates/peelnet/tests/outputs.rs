@@ -82,7 +82,14 @@ fn a_folder_of_results_is_of_one_run() {
     let folder = Folder::new(&[("two.toml", SCENE)]);
     let bench = "bench two.toml --methods wboit-eq9 --frames 0 --size 8x8 --out b";
     folder.prints(bench);
+    // A key of the user's own stays.
+    let results = String::from_utf8(folder.read("b/results.json")).unwrap();
+    let own = results.replace("\n  \"command\"", "\n  \"note\": 1,\n  \"command\"");
+    assert_ne!(own, results);
+    folder.write("b/results.json", &own);
     folder.prints("bench redraw --out b");
+    assert_eq!(folder.read("b/results.json"), own.as_bytes());
+    folder.write("b/results.json", results);
     let held = peelnet_train::OutputLock::take(&folder.at("b/.peelnet")).unwrap();
     for line in [
         bench,
@@ -111,6 +118,7 @@ fn a_folder_of_results_is_of_one_run() {
     std::fs::remove_dir_all(folder.at("b/images")).unwrap();
     folder.prints("bench redraw --out b");
     let results = String::from_utf8(folder.read("b/results.json")).unwrap();
+    let long = "x".repeat(70_000);
     for (from, to, why) in [
         ("\"mse_linear\": ", "\"mse_linear\": -", "`mse_linear` is -"),
         (
@@ -118,6 +126,7 @@ fn a_folder_of_results_is_of_one_run() {
             "abuffer",
             "is a second one of abuffer on view 0 of two",
         ),
+        ("wboit-eq9", &long, "`method` has 70000 characters"),
     ] {
         folder.write("b/results.json", results.replace(from, to));
         for line in ["bench redraw --out b", "recommend two.toml --results b"] {
@@ -159,6 +168,24 @@ fn a_pipe_without_a_reader_is_an_error() {
     let said = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(1), "{said}");
     assert!(said.contains("pipe"), "{said}");
+}
+
+/// A program that asks for JSON gets it, or an error.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_closed_stdout_is_an_error_of_json() {
+    let folder = Folder::new(&[]);
+    folder.prints("extract --synthetic 3000 --out d");
+    let line = format!("'{}' inspect d --json >&-", env!("CARGO_BIN_EXE_peelnet"));
+    let mut shell = std::process::Command::new("sh");
+    let output = shell
+        .args(["-c", &line])
+        .current_dir(folder.path())
+        .output();
+    let output = output.unwrap();
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    assert!(said.contains("stdout is closed"), "{said}");
 }
 
 /// Until a signal has ended a command that nobody waits for: a second is promised, and machines that run tests are slow.

@@ -161,4 +161,12 @@ fn a_scene_without_transparency_is_a_warning() {
         said.contains("nothing transparent is seen in opaque-spheres;"),
         "{said}"
     );
+    for line in [
+        "bench o.toml --size 8x8 --methods mboit4 --out b -q",
+        "recommend o.toml --results b -q",
+    ] {
+        let said = folder.says(line, 0);
+        let words = "nothing transparent is seen in opaque-spheres, so";
+        assert!(said.contains(words), "{said}");
+    }
 }

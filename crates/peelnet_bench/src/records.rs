@@ -1,7 +1,10 @@
 //! What is written to the files of results. `docs/results-files.md` says what each field is, and its unit.
 
 use crate::designs::MOTIONS;
-use peelnet_core::methods::slabs::Kept;
+use peelnet_core::{
+    files::{check_name, printable},
+    methods::slabs::Kept,
+};
 use peelnet_model::PixelLoss;
 use peelnet_render::Property;
 use serde::{Deserialize, Deserializer, Serialize, de::Error as _};
@@ -79,10 +82,13 @@ impl Row {
         let fields =
             serde_json::to_value(self).expect("names are text, and floats serialise always");
         for (name, value) in fields.as_object().into_iter().flatten() {
+            if let ("method" | "scene", Some(text)) = (&**name, value.as_str()) {
+                check_name(text).map_err(|e| format!("`{name}` {e}"))?;
+            }
             let least = if name == "ssim" { -1.0 } else { 0.0 };
             if let Some(x) = value.as_f64().filter(|x| !(least..=LARGEST).contains(x)) {
                 return Err(format!(
-                    "`{name}` is {x}, and lies from {least} to {LARGEST:e}"
+                    "`{name}` is {x:?}, and lies from {least} to {LARGEST:e}"
                 ));
             }
         }
@@ -104,7 +110,9 @@ fn checked<'de, D: Deserializer<'de>>(rows: D) -> Result<Vec<Row>, D::Error> {
         let checked = match known.insert((method, scene, view)) {
             true => row.check(),
             false => Err(format!(
-                "is a second one of {method} on view {view} of {scene}"
+                "is a second one of {} on view {view} of {}",
+                printable(method),
+                printable(scene)
             )),
         };
         checked.map_err(|why| D::Error::custom(format!("rows[{k}]: {why}")))?;

@@ -86,10 +86,15 @@ pub(crate) fn weight_function(model: &Model, precision: Precision) -> String {
         clamped(&identifier(&i.name), low, high)
     });
     let root = clamped(&identifier(&inputs[0].name), 0.0, ROOT_ABSORBANCE_LIMIT);
+    // A sigmoid's answers need no guard.
+    let share = match model.mlp.output {
+        Activation::Sigmoid => format!("{last}_a"),
+        _ => clamped(&format!("{last}_a"), 0.0, 1.0),
+    };
     format!(
         "// {what}, for inputs as peelnet_network evaluates them.
 fn peelnet_share({parameters}) -> {kind} {{
-{lines}    return {last}_a;
+{lines}    return {share};
 }}
 
 // Its transmittance, for any finite inputs.

@@ -287,7 +287,7 @@ pub fn export(
 mod tests {
     use super::*;
     use crate::wgsl;
-    use peelnet_core::mlp::{Layer, Mlp};
+    use peelnet_core::mlp::{Activation, Layer, Mlp};
     use peelnet_model::Recipe;
     use peelnet_render::gpu::AdapterRequest;
 
@@ -333,7 +333,13 @@ mod tests {
         let topologies = [&[10, 8][..], &[8], &[], &[32, 16], &[5, 3, 2]];
         let thesis = topologies.map(|hidden| model(Recipe::THESIS, hidden, 7));
         let recipes = Recipe::ALL.map(|recipe| model(recipe, &[8, 8], 11));
-        for model in thesis.into_iter().chain(recipes) {
+        // A share beyond 0 … 1 is kept in it.
+        let shares = [Activation::Identity, Activation::Relu].map(|output| {
+            let mut model = model(Recipe::LARGE, &[8, 8], 11);
+            model.mlp.output = output;
+            model
+        });
+        for model in thesis.into_iter().chain(recipes).chain(shares) {
             let text = wgsl(&model).expect("exports");
             assert_eq!(text, wgsl(&model).expect("exports"));
             let v = verify(&gpu, &model, &text).expect("agrees");

@@ -15,6 +15,13 @@ pub(crate) const MAX_PARTS: u64 = 1_000_000;
 /// Most texels of all textures: 4 GiB.
 const MAX_TEXELS: u64 = 1 << 30;
 
+/// Most triangles that displacements cut others into, and most texels of generated patterns: seconds on a CPU.
+pub(crate) const MAX_CUT: u64 = 8_000_000;
+const MAX_GENERATED_TEXELS: u64 = 1 << 25;
+
+/// Most changes by the states of a timeline, which are checked one by one.
+pub(crate) const MAX_CHANGES: u64 = 1_000_000;
+
 /// Most lights of a scene: every lit fragment loops over them.
 pub const MAX_LIGHTS: usize = 16_384;
 
@@ -28,6 +35,8 @@ pub(crate) struct Budget {
     vertices: u64,
     parts: u64,
     texels: u64,
+    cut: u64,
+    generated_texels: u64,
 }
 
 impl Budget {
@@ -35,6 +44,24 @@ impl Budget {
     pub fn take_mesh(&mut self, triangles: u64, vertices: u64) -> Result<(), String> {
         take(&mut self.triangles, triangles, MAX_TRIANGLES, "triangles")?;
         take(&mut self.vertices, vertices, MAX_VERTICES, "vertices")
+    }
+
+    /// Takes the triangles that a displacement cuts others into.
+    pub fn take_cut(&mut self, triangles: u64) -> Result<(), String> {
+        let what = "triangles cut by displacements";
+        take(&mut self.cut, triangles, MAX_CUT, what)
+    }
+
+    /// Takes the texels of a square pattern.
+    pub fn take_pattern(&mut self, size: u32) -> Result<(), String> {
+        let (texels, what) = (u64::from(size).pow(2), "texels of patterns");
+        take(
+            &mut self.generated_texels,
+            texels,
+            MAX_GENERATED_TEXELS,
+            what,
+        )?;
+        self.take_texels([size; 2])
     }
 
     /// Takes `parts` of each of so many objects.
@@ -82,6 +109,10 @@ mod tests {
         assert!(e.contains("1001 parts") && e.contains("999000"), "{e}");
         assert!(e.contains("1000000"), "{e}");
         budget.take_parts(1000, 1).expect("fits");
+        budget.take_pattern(4096).expect("fits");
+        budget.take_pattern(4096).expect("fits");
+        let e = budget.take_pattern(4).expect_err("too many");
+        assert!(e.contains("texels of patterns beside 33554432"), "{e}");
         let e = budget.take_texels([u32::MAX; 2]).expect_err("too many");
         assert!(e.contains("1073741824"), "{e}");
         assert!(budget.take_parts(usize::MAX, usize::MAX).is_err());

@@ -5,7 +5,7 @@
 mod tests;
 
 use crate::{
-    budget::{Budget, MAX_TRIANGLES},
+    budget::{Budget, MAX_CUT},
     material::Material,
     mesh::{Mesh, area_of, key_of},
     texture::{Displacement, Texture, Wrap},
@@ -99,8 +99,10 @@ fn take(mesh: &Mesh, level: u32, budget: &mut Budget) -> Result<(), String> {
     let triangles = all << (2 * level);
     // A cut has a middle for each edge, of which there are at most three to a triangle: the sum over all cuts.
     let vertices = mesh.positions.len() as u64 + triangles - all;
-    budget.take_mesh(triangles, vertices).map_err(|e| {
-        let fits = (0..level).rev().find(|l| all << (2 * l) <= MAX_TRIANGLES);
+    let cut = budget.take_cut(triangles - all);
+    let taken = cut.and_then(|()| budget.take_mesh(triangles, vertices));
+    taken.map_err(|e| {
+        let fits = (0..level).rev().find(|l| (all << (2 * l)) - all <= MAX_CUT);
         let fix = fits.map_or_else(String::new, |l| {
             format!(", with a displacement_level of {l} or less")
         });

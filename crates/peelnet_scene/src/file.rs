@@ -22,6 +22,7 @@ use crate::{
 };
 use glam::Vec3;
 use loader::Loader;
+use peelnet_core::files::{MAX_SHOWN, check_name};
 use raw::RawScene;
 use std::{
     io,
@@ -147,8 +148,6 @@ fn instead(path: &Path, error: SceneError) -> SceneError {
     )
 }
 
-const MAX_NAME: usize = peelnet_core::files::MAX_SHOWN;
-
 /// A background as bright as this was hardly meant.
 const MUCH_BRIGHTER: f32 = 16.0;
 
@@ -195,11 +194,7 @@ fn assemble(raw: RawScene, mut loader: Loader<'_>, time: Option<f32>) -> Result<
         loader.files.warn(loader.path, &message);
     }
     let name = raw.name.unwrap_or_else(|| name_of(loader.path));
-    let length = name.chars().count();
-    if length > MAX_NAME {
-        let message = format!("has {length} characters; give it at most {MAX_NAME}");
-        return Err(loader.value("name", message));
-    }
+    check_name(&name).map_err(|e| loader.value("name", e))?;
     let mut objects = Vec::new();
     for (i, object) in snapshot.objects.iter().enumerate() {
         let next = &snapshot.next.get(i).unwrap_or(object).material;
@@ -245,8 +240,10 @@ fn assemble(raw: RawScene, mut loader: Loader<'_>, time: Option<f32>) -> Result<
 }
 
 fn name_of(path: &Path) -> String {
-    path.file_stem()
-        .map_or_else(|| "scene".into(), |s| s.to_string_lossy().into_owned())
+    path.file_stem().map_or_else(
+        || "scene".into(),
+        |s| s.to_string_lossy().chars().take(MAX_SHOWN).collect(),
+    )
 }
 
 /// Farthest from the origin that an object of a scene file lies, in distances `far`: of the 24 bits of its vertices' coordinates, 8 are left for

@@ -105,6 +105,16 @@ impl Material {
         mixed
     }
 
+    /// Its cutoff once its opacity is `alpha`: what was a hole stays one.
+    pub(crate) fn cutoff_at(&self, alpha: f32) -> Option<f32> {
+        let factor = if self.alpha > 0.0 {
+            alpha / self.alpha
+        } else {
+            1.0
+        };
+        self.alpha_cutoff.map(|cutoff| cutoff * factor)
+    }
+
     /// Whether it is drawn by the opaque pass.
     pub fn is_opaque(&self) -> bool {
         let whole = self.alpha_cutoff.is_some() || self.alpha >= 1.0;

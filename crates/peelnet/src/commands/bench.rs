@@ -3,7 +3,7 @@
 
 mod designs;
 
-use super::{Context, command_line};
+use super::{Context, command_line, few};
 use crate::cli::{BenchArgs, BenchCommand, CompareArgs, EffectsArgs, PathArgs, ScalingArgs};
 use crate::progress::Bar;
 use peelnet::{Compared, Failure};
@@ -22,7 +22,10 @@ use peelnet_render::gpu::Gpu;
 use peelnet_render::{LearnedWeight, MethodSpec};
 use peelnet_scene::{Scene, suite};
 use serde_json::json;
-use std::path::{Path, PathBuf};
+use std::{
+    collections::BTreeMap,
+    path::{Path, PathBuf},
+};
 
 pub(super) fn run(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure> {
     match &args.command {
@@ -53,8 +56,11 @@ fn compare(context: &Context<'_>, args: &CompareArgs) -> Result<(), Failure> {
     let results = measure(context, &scenes, named, models, plan, folder)?;
     results.write(out)?;
     Partial::discard(out);
+    warn_of_opaque(context, &results);
     print(context, &results)
 }
+
+const RESULTS: &str = "results.json";
 
 /// Draws older results again. That ends no interrupted run: its finished views stay.
 fn redraw(context: &Context<'_>, out: &Path) -> Result<(), Failure> {
@@ -63,7 +69,8 @@ fn redraw(context: &Context<'_>, out: &Path) -> Result<(), Failure> {
     let _begun = context.begin_in(out, outputs, &[])?;
     let results = read(out)?;
     check_pictures(&results.measured.rows, out)?;
-    results.write(out)?;
+    // What else a user put into that file stays.
+    results.write_but(RESULTS, out)?;
     print(context, &results)
 }
 
@@ -227,7 +234,7 @@ fn finished(
     folder: &Path,
     settings: &str,
 ) -> Result<Option<Results<Bench>>, Failure> {
-    let file = folder.join("results.json");
+    let file = folder.join(RESULTS);
     if Partial::is_in(folder) {
         return Ok(None);
     }
@@ -250,6 +257,23 @@ fn finished(
         shown(&file)
     ));
     Ok(Some(results))
+}
+
+/// Warns of scenes in which nothing transparent was seen: every method is exact there.
+pub(super) fn warn_of_opaque(context: &Context<'_>, results: &Results<Bench>) {
+    let rows = &results.measured.rows;
+    let mut seen: BTreeMap<&str, bool> = BTreeMap::new();
+    for row in rows {
+        *seen.entry(&row.scene).or_default() |= row.fragments != Some(0);
+    }
+    let opaque = seen.into_iter().filter(|(_, is_seen)| !is_seen);
+    let opaque: Vec<String> = opaque.map(|(name, _)| name.to_owned()).collect();
+    if !opaque.is_empty() {
+        context.console.warn(format!(
+            "nothing transparent is seen in {}, so methods do not differ there; look at its materials' alpha and its cameras",
+            few(&opaque, 6)
+        ));
+    }
 }
 
 /// Every method with one setting, the first of its curve.

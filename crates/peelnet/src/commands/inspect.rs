@@ -12,10 +12,12 @@ use serde_json::json;
 use std::{collections::HashMap, path::Path};
 
 /// Frames in which a scene's fragments are counted: view 0 at the size that `extract` and `render` use by default, or at a 256th of its
-/// pixels if the scene has more triangles, or more fragments there, than are drawn within seconds on a CPU.
+/// pixels if the scene has more triangles, or more fragments there, than are drawn within seconds on a CPU. Parts are drawn one by one:
+/// of more than these nothing is counted.
 const COUNTED_AT: [[u32; 2]; 2] = [[1024, 768], [64, 48]];
 const MOST_TRIANGLES: u64 = 1 << 20;
 const MOST_FRAGMENTS: u64 = 1 << 17;
+const MOST_PARTS: usize = 1 << 15;
 
 const TIMED_AT: [u32; 2] = [512, 384];
 
@@ -128,7 +130,12 @@ fn scene(context: &Context<'_>, path: &Path, time: bool) -> Result<(), Failure> 
         }
     }
     let [whole, small] = COUNTED_AT;
+    let parts: usize = scene.objects.iter().map(|o| o.materials.len()).sum();
     let counted = context.gpu().and_then(|gpu| {
+        if parts > MOST_PARTS {
+            let why = format!("the scene has {} parts", thousands(parts as u64));
+            return Err(Failure::failed(why));
+        }
         let first = count(&gpu, &scene, small)?;
         if triangles[0] > MOST_TRIANGLES || first.fragments > Some(MOST_FRAGMENTS) {
             return Ok((small, first));

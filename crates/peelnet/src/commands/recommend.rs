@@ -22,6 +22,7 @@ pub(super) fn run(context: &Context<'_>, args: &RecommendArgs) -> Result<(), Fai
             bench::measure(context, scene, None, &[], plan, None)?
         }
     };
+    bench::warn_of_opaque(context, &results);
     let rows = &results.measured.rows;
     let (points, warning) = points_for(rows, &scene);
     let from = match warning {

@@ -1,6 +1,7 @@
 use super::{DESIGNS, Entry, Source};
 use crate::EvalError;
 use peelnet_core::{
+    files::{check_name, printable},
     methods::slabs::{Design, Extent, Interior, Kept, MAX_BINS, MAX_SLABS},
     statistics::{DEPTH_CODES, ExtremeCode, FARTHEST_CODE},
 };
@@ -83,7 +84,7 @@ pub fn parse(text: &str, path: &Path) -> Result<Vec<Entry>, EvalError> {
     }
     let mut entries: Vec<Entry> = Vec::new();
     for (raw, number) in file.design.into_iter().zip(1..) {
-        let what = format!("design {number} ({:?})", raw.name);
+        let what = format!("design {number} (\"{}\")", printable(&raw.name));
         let entry = raw.entry(budget, &entries);
         entries.push(entry.map_err(|why| failed(path, &what, &why))?);
     }
@@ -99,6 +100,7 @@ impl RawDesign {
         if self.name.trim().is_empty() {
             return Err("give it a name".to_owned());
         }
+        check_name(&self.name).map_err(|e| format!("its name {e}"))?;
         if earlier.iter().any(|e| e.name == self.name) {
             return Err("an earlier design has this name; rename one".to_owned());
         }
@@ -340,6 +342,7 @@ seed = 7
             ("\"contributions\"", "\"l2\"", second, "transmittance"),
             ("\"frame\"", "\"pixel\"\nbins = 17", second, "1 to 16"),
             ("\"full\"", "\"plain\"", "design 2", "rename"),
+            ("full", &"x".repeat(201), "design 2", "at most 200"),
             ("epochs = 3", "epochs = 0", "[training]", "greater than 0"),
             ("hidden", "hiden", "line 23", "`hidden`"),
             (GOOD, "", "no design", "[[design]]"),

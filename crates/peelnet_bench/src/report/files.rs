@@ -14,6 +14,17 @@ const TABLES: [&str; 4] = [
     "method,series,value,",
 ];
 
+/// Starts of the tables that are written as Markdown.
+const MARKDOWN: [&str; 7] = [
+    "| method | MSE (linear) |",
+    "| method | JOD |",
+    "| method | time ~ ",
+    "| design | ends |",
+    "# Stress cases\n",
+    "## What each effect costs\n",
+    "# Weighted and learned weighted blending",
+];
+
 /// By what a file of a measurement is known, from its name.
 pub fn kind_of(name: &str) -> Kind {
     let (name, is): (_, fn(&[u8]) -> bool) = match name.rsplit('.').next().unwrap_or_default() {
@@ -25,9 +36,11 @@ pub fn kind_of(name: &str) -> Kind {
             let mut starts = TABLES.iter().map(|start| start.as_bytes());
             starts.any(|start| head.starts_with(start))
         }),
-        // The sentence under every table.
+        // Or the sentence under every table, of older versions.
         "md" => ("a table of peelnet", |head| {
-            contains(head, &["Measured on ", ") with `"])
+            let mut starts = MARKDOWN.iter().map(|start| start.as_bytes());
+            starts.any(|start| head.starts_with(start))
+                || contains(head, &["Measured on ", ") with `"])
         }),
         // The envelope begins with the machine.
         _ => ("results of peelnet", |head| {

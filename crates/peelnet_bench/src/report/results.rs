@@ -61,7 +61,12 @@ impl<T: Measurement> Results<T> {
 
     /// Writes the files into a folder; pages show the pictures in `images/` in it.
     pub fn write(&self, folder: &Path) -> Result<(), EvalError> {
-        for (name, text) in T::FILES {
+        self.write_but("", folder)
+    }
+
+    /// The same without one of the files.
+    pub fn write_but(&self, left: &str, folder: &Path) -> Result<(), EvalError> {
+        for (name, text) in T::FILES.iter().filter(|(name, _)| *name != left) {
             let text = text(self, folder)?;
             let path = folder.join(name);
             // A chart of nothing is left out, and an older one is not of these results.

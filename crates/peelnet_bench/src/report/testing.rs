@@ -37,6 +37,11 @@ pub(crate) fn written<T: Measurement + DeserializeOwned>(
         assert!(files.contains(&name), "{name}");
         let kind = crate::report::kind_of(name);
         assert!(!kind.is_foreign(&path).expect("reads"), "{name}");
+        if name.ends_with(".md") {
+            // However long the table is.
+            let text = std::fs::read(&path).expect("reads");
+            assert!((kind.is)(&text[..text.len().min(64)]), "{name}");
+        }
         std::fs::write(&path, "a user's own").expect("writes");
         assert!(kind.is_foreign(&path).expect("reads"), "{name}");
     }

@@ -300,7 +300,11 @@ fn is_stdout_closed() -> bool {
     leads_to_null && flags.is_some_and(|flags| flags.ends_with(READ_AND_WRITE))
 }
 
-fn to_stdout(bytes: &[u8]) -> io::Result<()> {
+/// Writes to stdout.
+///
+/// # Errors
+/// Where it is closed or cannot be written.
+pub fn to_stdout(bytes: &[u8]) -> io::Result<()> {
     if is_stdout_closed() {
         return Err(io::Error::new(
             io::ErrorKind::NotConnected,

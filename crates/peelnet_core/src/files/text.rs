@@ -5,6 +5,17 @@ use std::{borrow::Cow, error::Error, path::Path};
 /// Characters of a foreign name that are shown.
 pub const MAX_SHOWN: usize = 200;
 
+/// Refuses a name that is longer than what is shown of it.
+///
+/// # Errors
+/// How long it is, and how long it may be.
+pub fn check_name(name: &str) -> Result<(), String> {
+    match name.chars().count() {
+        0..=MAX_SHOWN => Ok(()),
+        n => Err(format!("has {n} characters; give it at most {MAX_SHOWN}")),
+    }
+}
+
 /// A name from a file or from the command line, fit for one line of a terminal, a shader's comment or a page's source:
 /// what could move the cursor, end a line or hide text is escaped as `\u{…}`, and what follows the first
 /// [`MAX_SHOWN`] characters is left out with an ellipsis.

@@ -111,7 +111,7 @@ impl<'a> Loader<'a> {
         let texture = match map {
             Reference::Made(pattern) => {
                 let taken = pattern.check();
-                let taken = taken.and_then(|()| self.files.budget.take_texels([pattern.size; 2]));
+                let taken = taken.and_then(|()| self.files.budget.take_pattern(pattern.size));
                 taken.map_err(|e| self.value(&format!("{table}.{key}"), e))?;
                 pattern.texture(key)
             }

@@ -79,8 +79,11 @@ impl RawMaterial {
                 // A colour map with transparent texels makes the surface transparent.
                 let own = self.color_map.as_ref().and(maps.color.as_ref());
                 let is_clear = own.is_some_and(|map| map.has_alpha);
-                let blend = self.blend.unwrap_or(base.blend || is_clear);
-                (base.alpha_cutoff, blend)
+                // Nor is a cut-out transparent between its holes unless it blends.
+                let thinned = self.alpha.filter(|alpha| *alpha < 1.0);
+                let is_clear = is_clear || (base.alpha_cutoff.is_some() && thinned.is_some());
+                let cutoff = thinned.map_or(base.alpha_cutoff, |alpha| base.cutoff_at(alpha));
+                (cutoff, self.blend.unwrap_or(base.blend || is_clear))
             }
             Some(AlphaMode::Opaque) => (Some(0.0), false),
             Some(AlphaMode::Mask) => (Some(self.alpha_cutoff.unwrap_or(ALPHA_CUTOFF)), false),

@@ -52,7 +52,7 @@ pub(super) fn load(path: &Path, load: Load, mut files: Files<'_>) -> Result<Scen
         }
         lights.extend(default_lights(bounds, lighting));
     }
-    if !file.is_scene && materials.iter().all(Material::is_opaque) {
+    if materials.iter().all(Material::is_opaque) {
         let message = "is opaque; to look through it, name it in a scene file, with material = { alpha = 0.5 }";
         files.warn(path, message);
     }

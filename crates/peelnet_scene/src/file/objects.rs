@@ -47,6 +47,10 @@ pub(super) fn place(
             let next = loader.material(&part.material, next, false, &field)?;
             shown = shown.towards(&next, share);
         }
+        // As a vertex of a mesh file does.
+        let is_said = raw.material.alpha_mode.is_some() || raw.material.blend.is_some();
+        let mut ends = raw.vertex_colors.iter().flatten();
+        shown.blend |= !is_said && ends.any(|color| color[3] < 1.0);
         materials.push(shown);
     }
     let has = |map: fn(&Maps) -> bool| materials.iter().any(|m| map(&m.maps));
@@ -113,6 +117,10 @@ pub(super) fn scatter(
     eye: Vec3,
 ) -> Result<Vec<Object>, SceneError> {
     scatter.check().map_err(|e| loader.fault(field, e))?;
+    if scatter.jitter != 0.0 && scatter.grid.is_none() {
+        let what = format!("{field}.jitter: changes nothing without a grid; leave it out");
+        loader.files.warn(loader.path, &what);
+    }
     let map = scatter.color_map.as_ref();
     let map = map.map(|map| loader.map(map, "color_map", field));
     let map = map.transpose()?;
@@ -136,7 +144,12 @@ pub(super) fn scatter(
             alpha: placed.alpha.unwrap_or(p.material.alpha),
             lighting: scatter.lighting.unwrap_or(p.material.lighting),
             // An opacity of 1 drawn from a range blends like the others.
-            blend: placed.alpha.is_some() || map.as_ref().is_some_and(|map| map.has_alpha),
+            blend: p.material.blend
+                || placed.alpha.is_some()
+                || map.as_ref().is_some_and(|map| map.has_alpha),
+            alpha_cutoff: p
+                .material
+                .cutoff_at(placed.alpha.unwrap_or(p.material.alpha)),
             maps: Maps {
                 color: map.clone().or_else(|| p.material.maps.color.clone()),
                 ..p.material.maps.clone()

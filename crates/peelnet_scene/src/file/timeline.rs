@@ -4,9 +4,13 @@ use super::{
     loader::Loader,
     raw::{RawObject, RawState},
 };
-use crate::{error::SceneError, material::Material};
+use crate::{
+    budget::{self, MAX_CHANGES},
+    error::SceneError,
+    material::Material,
+};
 use peelnet_core::files::printable;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 pub(super) const NO_TIMELINE: &str = "is missing: leave the time out, or add [[timeline]] states";
 
@@ -64,10 +68,20 @@ impl Snapshot {
                 numbers.entry(name.clone()).or_default().push(i);
             }
         }
+        let changes = states.iter().flat_map(|state| &state.object);
+        let changed = changes.filter_map(|change| numbers.get(&change.name));
+        let count = changed.map(|objects| objects.len() as u64).sum();
+        budget::check(count, MAX_CHANGES, "changes of objects")
+            .map_err(|e| loader.value("timeline", e))?;
         let any = Material::default_with(loader.files.lighting);
         for (i, state) in states.iter().enumerate() {
             let field = format!("timeline {}", i + 1);
+            let mut named = HashSet::new();
             for change in &state.object {
+                if !named.insert(&change.name) {
+                    let message = format!("names '{}' twice", printable(&change.name));
+                    return Err(loader.value(&format!("{field}.object.name"), message));
+                }
                 let Some(numbers) = numbers.get(&change.name) else {
                     let message = format!("no [[object]] is named '{}'", printable(&change.name));
                     return Err(loader.value(&format!("{field}.object.name"), message));

@@ -14,7 +14,7 @@ use std::{borrow::Cow, fmt::Write, path::Path};
 
 /// What is said of bright vertices.
 pub(super) const BRIGHT: &str =
-    "vertex colours above 1 are taken as 1; divide those of bytes by 255";
+    "vertex colours outside of 0 … 1 are cut off; divide those of bytes by 255";
 
 /// Reads an OBJ file and the MTL files and textures that it names.
 ///
@@ -41,7 +41,7 @@ pub(super) fn load(path: &Path, files: &mut Files<'_>) -> Result<Imported, Scene
     let named = text.lines().filter_map(|line| line.strip_prefix("usemtl "));
     let materials = libraries.finish(named);
     let mut colors = models.iter().flat_map(|m| &m.mesh.vertex_color);
-    if colors.any(|c| *c > 1.0) {
+    if colors.any(|c| !(0.0..=1.0).contains(c)) {
         files.warn(path, BRIGHT);
     }
     let mut triangulator = Triangulator::default();

@@ -242,9 +242,11 @@ impl Faces<'_> {
         }
         if channels[0] || has(&ALPHA) {
             let mut colors: Vec<[f32; 4]> = vertices.iter().map(|v| v.color).collect();
-            for x in colors.as_flattened_mut().iter_mut().filter(|x| **x > 1.0) {
+            let all = colors.as_flattened_mut().iter_mut();
+            for x in all.filter(|x| !(0.0..=1.0).contains(*x)) {
                 self.is_bright = true;
-                *x = 1.0;
+                // 0 of what is no number, too.
+                *x = if *x > 1.0 { 1.0 } else { 0.0 };
             }
             self.surface.colors = colors;
         }

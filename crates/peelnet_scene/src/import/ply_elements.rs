@@ -65,15 +65,14 @@ impl PropertyAccess for Vertex {
     }
 }
 
-/// A value from 0, which should be at most 1; of whole numbers, the largest of a byte, or of a 16-bit number, is 1.
+/// A value that should be 0 … 1; of whole numbers, the largest of a byte, or of a 16-bit number, is 1.
 fn share(value: &Property, x: f32) -> f32 {
     let most = match value {
         Property::Float(_) | Property::Double(_) => 1.0,
         Property::UShort(_) => 65_535.0,
         _ => 255.0,
     };
-    // 0 of what is no number, too.
-    (x / most).max(0.0)
+    x / most
 }
 
 /// A channel of a colour as linear light. Whole numbers are sRGB.

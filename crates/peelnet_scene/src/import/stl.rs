@@ -82,10 +82,13 @@ fn read_text(path: &Path, bytes: &[u8], files: &mut Files<'_>) -> Result<Mesh, F
         let words: Vec<&str> = line.split_whitespace().collect();
         let first = words.first().map(|word| word.to_ascii_lowercase());
         match first.as_deref() {
-            None | Some("outer" | "endfacet") => {}
+            Some(next @ ("facet" | "endfacet" | "solid" | "endsolid")) if !vertices.is_empty() => {
+                let message = format!("'{next}' inside of a facet; add 'endloop' before it");
+                return Err((Some(i), message));
+            }
+            None | Some("outer" | "facet" | "endfacet") => {}
             Some("solid") => is_open = true,
             Some("endsolid") => is_open = false,
-            Some("facet") => vertices.clear(),
             Some("vertex") if words.len() == 4 => {
                 let number = |k: usize| words[k].parse().unwrap_or(f32::NAN);
                 let vertex = Vec3::new(number(1), number(2), number(3));

@@ -60,7 +60,7 @@ fn document() -> Value {
             {"name": "glass", "alphaMode": "BLEND", "doubleSided": true,
              "pbrMetallicRoughness": {"baseColorFactor": [0.2, 0.4, 0.6, 0.3], "metallicFactor": 0.25, "roughnessFactor": 0.75}},
             {"name": "leaf", "alphaMode": "MASK", "alphaCutoff": 0.4},
-            {"name": "sign", "extensions": {"KHR_materials_unlit": {}}},
+            {"name": "sign", "emissiveFactor": [0.0, 1.0, 0.0], "extensions": {"KHR_materials_unlit": {}}},
             {"name": "lamp", "emissiveFactor": [0.5, 0.25, 0.0], "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 4.0}}},
         ],
         "accessors": [
@@ -124,6 +124,7 @@ fn nodes_instances_materials_lights_and_cameras() {
     assert!(glass.blend && glass.double_sided && glass.lighting == Lighting::Pbr);
     assert_eq!((leaf.alpha_cutoff, leaf.is_opaque()), (Some(0.4), true));
     assert_eq!((sign.lighting, sign.alpha), (Lighting::Unlit, 1.0));
+    assert_eq!(sign.emission, [0.0; 3]);
     assert_eq!(lamp.emission, [2.0, 1.0, 0.0]);
     let point = Source::Point(Vec3::new(0.0, 3.0, -2.0));
     let lights = scene.lights.iter();

@@ -48,7 +48,10 @@ fn what_exporters_write() {
     });
     let (_, warnings, _) = load(&obj, "newmtl a\nTf 0.1 1 1\nnewmtl b\nTf 1 1 1\nKdd 3\n");
     assert_eq!(warnings.len(), 2, "{warnings:?}");
-    assert_says(&warnings.join("\n"), "not drawn: Tf, Kdd & colours above 1");
+    assert_says(
+        &warnings.join("\n"),
+        "not drawn: Tf, Kdd & colours outside of 0 … 1",
+    );
 }
 
 /// Lines of a library, where ` ; ` ends one, and the error; the same of what follows the vertices of a square.

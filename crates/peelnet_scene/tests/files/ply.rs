@@ -90,7 +90,10 @@ fn colours_and_opacity_of_vertices() {
     let (mesh, warnings, _) = with("0");
     assert_eq!(mesh.colors[0][3], 1.0);
     assert!(mesh.parts[0].material.is_opaque());
-    assert_says(&warnings.join("\n"), "opacity of 0 & colours above 1");
+    assert_says(
+        &warnings.join("\n"),
+        "opacity of 0 & colours outside of 0 … 1",
+    );
 }
 
 /// Normals of the file, of which one is zero; texture coordinates of vertices and of faces; a concave polygon; other elements between.
@@ -139,6 +142,9 @@ fn properties_that_few_files_have() {
     let (m, warnings, _) = with("uchar alpha").unwrap();
     assert_eq!(m.colors, [[1.0, 1.0, 1.0, 0.2]; 3]);
     assert_says(&warnings.join("\n"), "not drawn: red of face");
+    let signed = square_text().replace("uchar red", "char red");
+    let (_, warnings, _) = load(signed.replace("255 188", "-1 188").as_bytes()).unwrap();
+    assert_says(&warnings.join("\n"), "outside of 0 … 1");
     let (_, warnings, _) = with("float confidence").unwrap();
     assert_says(
         &warnings.join("\n"),

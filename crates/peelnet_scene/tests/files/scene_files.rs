@@ -48,6 +48,7 @@ fov_y = 1e-40 => camera.fov_y & 0.01 … 179
 [[light]] ; position = [1, 1, 1] ; color = [255, 0, 0] => light 1: color & 255 & 0 … 1 & divide
 [[timeline]] ; time = 1 ; [[timeline]] ; time = 1 => timeline 2.time & later
 [[timeline]] ; time = 1 ; [[timeline.object]] ; name = 'x' => timeline 1.object.name & 'x'
+[[object]] ; name = 'x' ; mesh = { shape = 'box' } ; [[timeline]] ; time = 1 ; [[timeline.object]] ; name = 'x' ; [[timeline.object]] ; name = 'x' => timeline 1.object.name & twice
 [[object]] ; mesh = { shape = 'sphere', radius = 3e38 } => object 1.mesh & radius
 [[object]] ; mesh = { shape = 'sphere', radius = 1e-30 } => object 1.mesh & radius
 [[object]] ; mesh = { shape = 'sphere', radius = -2 } => object 1.mesh & positive
@@ -149,15 +150,19 @@ fn small_files_cannot_ask_for_endless_memory() {
     ));
     let instances = scatter(100_000, "shape = 'sphere', triangles = 20_000");
     let displaced = object("shape = 'sphere', triangles = 100_000")
-        + "material = { displacement_map = 'white.png', displacement_scale = 1, displacement_level = 9 }";
+        + "material = { displacement_map = 'white.png', displacement_scale = 1, displacement_level = 4 }";
+    let state = |time| format!("[[timeline]]\ntime = {time}\n[[timeline.object]]\nname = 'a'\n");
+    let states = (0..101).map(state).collect::<String>();
+    let states = (object("shape = 'quad'") + "name = 'a'\n").repeat(10_000) + &states;
     for (text, words) in [
         (quads, "scatter 2.count & 999500 & 1000 before & 1000000"),
         (huge, "object 2.mesh & 60000000 & 50000000"),
         (lathe, "object 1.mesh & 10002 & 10000"),
         (instances, "object & triangles & 1431655765"),
+        (states, "timeline & 1010000 changes & 1000000"),
         (
             displaced,
-            "object 1.material.displacement_map & displacement_level of 4 or less",
+            "object 1.material.displacement_map & displacement_level of 3 or less",
         ),
     ] {
         assert_refused(load(&text), words);
@@ -411,15 +416,66 @@ fn materials_of_mesh_files() {
     assert!(scene.lights[0].intensity > 3.0);
 }
 
+/// What blends in its file does so in a scatter; an opacity makes a cut-out transparent between its holes; that of vertices counts.
+#[test]
+fn materials_of_files_in_scenes() {
+    let triangle = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty uchar alpha\n\
+        element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0 128\n1 0 0 128\n0 1 0 128\n3 0 1 2\n";
+    let mut gltf = serde_json::json!({
+        "asset": {"version": "2.0"}, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "material": 0}]}],
+        "materials": [{"alphaMode": "MASK", "alphaCutoff": 0.25}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}],
+        "bufferViews": [{"buffer": 0, "byteLength": 36}],
+        "buffers": [{"byteLength": 36, "uri": "b.bin"}],
+    });
+    let positions = [0f32, 0., 0., 1., 0., 0., 0., 1., 0.].map(f32::to_le_bytes);
+    let masked = gltf.to_string();
+    gltf["materials"][0] = serde_json::json!({});
+    let opaque = gltf.to_string();
+    let load = |text: &str| {
+        let text = format!("{CAMERA}{text}");
+        let files: [(&str, &[u8]); 4] = [
+            ("s.toml", text.as_bytes()),
+            ("a.ply", triangle.as_bytes()),
+            ("m.gltf", masked.as_bytes()),
+            ("b.bin", positions.as_flattened()),
+        ];
+        let m = load_files(&files).unwrap().objects[0].materials[0].clone();
+        (m.is_opaque(), m.alpha_cutoff)
+    };
+    let scatter = "[[scatter]]\nmin = [0, 0, 0]\nmax = [1, 1, 1]\ncount = 1\n";
+    for (text, material) in [
+        ("mesh = 'a.ply'", (false, None)),
+        ("mesh = 'm.gltf'", (true, Some(0.25))),
+        ("mesh = 'm.gltf'\nalpha = 0.5", (false, Some(0.125))),
+    ] {
+        assert_eq!(load(&format!("{scatter}{text}")), material, "{text}");
+        let text = text.replace("alpha = 0.5", "material = { alpha = 0.5 }");
+        assert_eq!(load(&format!("[[object]]\n{text}")), material, "{text}");
+    }
+    let colors =
+        "[[object]]\nmesh = { shape = 'quad' }\nvertex_colors = [[1, 0, 0, 0.5], [1, 0, 0, 1]]\n";
+    assert!(!load(colors).0);
+    assert!(load(&format!("{colors}material = {{ blend = false }}")).0);
+    // An opaque scene says so, of whatever format.
+    let files: [(&str, &[u8]); 2] = [
+        ("m.gltf", opaque.as_bytes()),
+        ("b.bin", positions.as_flattened()),
+    ];
+    let warnings = load_files(&files).unwrap().warnings.join("\n");
+    assert_says(&warnings, "is opaque");
+}
+
 /// What belongs to a map, where there is none.
 #[test]
 fn values_without_their_maps_are_reported() {
-    let object = "[[object]]\nmesh = { shape = 'quad' }\nmaterial = { normal_scale = 2, occlusion_strength = 1, wrap = 'clamp' }\n";
+    let object = "[[object]]\nmesh = { shape = 'quad' }\nmaterial = { normal_scale = 2, occlusion_strength = 1, wrap = 'clamp' }\n\
+        [[scatter]]\nmesh = { shape = 'quad' }\ncount = 1\nmin = [0, 0, 0]\nmax = [1, 1, 1]\njitter = 1\n";
     let text = format!("{CAMERA}{object}");
     let scene = load_files(&[("s.toml", text.as_bytes())]).unwrap();
     let warnings = scene.warnings.join("\n");
-    let words =
-        "material.normal_scale: changes nothing & material.occlusion_strength: & material.wrap: ";
+    let words = "material.normal_scale: changes nothing & material.occlusion_strength: & material.wrap: & scatter 1.jitter: changes nothing";
     assert_says(&warnings, words);
     let text = text.replace(
         "wrap =",

@@ -101,6 +101,7 @@ vertex 0 0 0 => vertex 0 nan 0 => a.stl:4 & not finite
 vertex 0 0 0 => vertex 0 1e16 0 => a.stl:4 & farther
 vertex 0 0 0 => vertex 0 0 => a.stl:4 & 'vertex 0 0'
  endloop =>  vertex 0 0 0 ;  endloop => a.stl:8 & 4 vertices
+ endloop =>  outer => a.stl:8 & 'endfacet' inside of a facet
 facet normal => face normal => a.stl:2 & 'face
 ";
 

@@ -253,6 +253,10 @@ impl Reader<'_, '_> {
             material.transmission = material.color.map(|c| c * passing);
             material.color = material.color.map(|c| c * (1.0 - passing));
         }
+        // Such files are lit by their base colour alone.
+        if m.unlit() {
+            (material.emission, material.maps.emissive) = ([0.0; 3], None);
+        }
         if is_beyond {
             self.files.warnings.clamped(self.path, &material.name);
         }
