@@ -600,7 +600,8 @@ mod tests {
         assert!((seen.iter().sum::<f64>() - want).abs() < 0.02, "{seen:?}");
         // A step of the nearest fragment's opacity is left in its own bin.
         assert!((seen[10] + seen[11]) / want > 0.95, "{seen:?}");
-        assert_eq!(seen_behind_nearest(&[(1.0, 0.4)]), [0.0; TILE_BINS]);
+        let alone = seen_behind_nearest(&[(1.0, 0.4)]);
+        assert!(alone.iter().sum::<f64>() < 0.02, "{alone:?}");
     }
 
     /// Where all tiles see the same, so do all pixels; beside a tile that sees nothing the quantiles are those of what is seen.
