@@ -601,7 +601,8 @@ mod tests {
         // A step of the nearest fragment's opacity is left in its own bin.
         assert!((seen[10] + seen[11]) / want > 0.95, "{seen:?}");
         let alone = seen_behind_nearest(&[(1.0, 0.4)]);
-        assert!(alone.iter().sum::<f64>() < 0.02, "{alone:?}");
+        // Its depth is known to half of 1/240, a thirtieth of a bin, which moves that much of it to the next.
+        assert!(alone.iter().sum::<f64>() < 0.04, "{alone:?}");
     }
 
     /// Where all tiles see the same, so do all pixels; beside a tile that sees nothing the quantiles are those of what is seen.
