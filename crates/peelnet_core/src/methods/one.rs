@@ -307,7 +307,7 @@ pub struct Rest {
     /// Coverage that is left for the sums.
     pub left: f64,
     pub coverage: f64,
-    /// As [`Kept::sums`], and what is known of each.
+    /// `Σ b φ_k c` and `Σ b φ_k` without it, and what is known of each.
     pub sums: [[f64; 4]; MAX_SUMS],
     pub ahead: [Ahead; MAX_SUMS],
 }
