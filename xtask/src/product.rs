@@ -47,11 +47,13 @@ pub fn demo(out: &str, full: &str) -> Outcome {
 }
 
 /// The recipes, each with the budget that a search (benches/budgets.py) chose where it is not the recipe's own. All learn from the same data.
-const RECIPES: [(&str, &str); 8] = [
+const RECIPES: [(&str, &str); 10] = [
     // The recipe's own are shorter, for networks of one's own scenes in a minute.
     ("small", "--epochs 40"),
     ("medium", "--epochs 80"),
     ("large", "--epochs 80"),
+    ("one", "--epochs 40"),
+    ("one-wide", "--epochs 40"),
     ("anchored-small", "--lr 0.016 --epochs 80"),
     ("anchored-medium", "--lr 0.016 --epochs 80"),
     ("nmt", "--max-rows 6000000"),
