@@ -87,8 +87,8 @@ struct PeelnetStatistics {
     vec4 farthest;
     vec4 firsts;
 };
-const float PEELNET_FAINT = 0.003921569;
 const float PEELNET_BIN_LEVELS = 64.0;
+const float PEELNET_FAINT = 0.003921569;
 const float PEELNET_BINS = 1920.0;
 const float PEELNET_OPACITIES = 32.0;
 const float PEELNET_EMPTY = -65504.0;
@@ -139,41 +139,51 @@ float peelnet_cut(float zeta, vec4 gaps) {
     return ((kept_1 * (2.0 / ((2.0 - lengths.x) - lengths.y))) - 1.0);
 }
 
-vec2 peelnet_range_of(float zeta_1) {
-    float level = (127.5 * (zeta_1 + 1.0));
-    return (vec2((255.0 - floor(level)), ceil(level)) / vec2(255.0));
+float peelnet_level(float absorbance) {
+    return max(floor(((absorbance * PEELNET_BIN_LEVELS) + 0.5)), 1.0);
 }
 
-vec2 peelnet_ends_of(vec2 range_1) {
-    vec2 levels_3 = floor(((range_1 * 255.0) + vec2(0.5)));
-    float nearest_2 = (255.0 - levels_3.x);
-    return vec2(nearest_2, max(levels_3.y, (nearest_2 + 1.0)));
-}
-
-PeelnetBins peelnet_bins(float alpha_1, float zeta_2) {
-    vec4 place_4 = vec4(clamp(((zeta_2 * 4.0) + 3.5), 0.0, 7.0));
-    float _e10 = peelnet_absorbance(alpha_1);
-    float level_1 = max(floor(((_e10 * PEELNET_BIN_LEVELS) + 0.5)), 1.0);
-    vec4 front_2 = max((vec4(1.0) - abs((place_4 - vec4(0.0, 1.0, 2.0, 3.0)))), vec4(0.0));
-    vec4 back_2 = max((vec4(1.0) - abs((place_4 - vec4(4.0, 5.0, 6.0, 7.0)))), vec4(0.0));
-    vec2 _e60 = peelnet_range_of(zeta_2);
-    return PeelnetBins((floor(((level_1 * front_2) + vec4(0.5))) / vec4(255.0)), (floor(((level_1 * back_2) + vec4(0.5))) / vec4(255.0)), _e60);
+vec4 peelnet_in_bins(float level, float place, float first) {
+    vec4 middles = vec4(first, (first + 1.0), (first + 2.0), (first + 3.0));
+    vec4 shares = max((vec4(1.0) - abs((vec4(place) - middles))), vec4(0.0));
+    return (floor(((level * shares) + vec4(0.5))) / vec4(255.0));
 }
 
 vec4 peelnet_seen_behind(float before, vec4 bins) {
     float two = (bins.x + bins.y);
-    vec4 levels_4 = (vec4(before) + vec4(bins.x, two, (two + bins.z), ((two + bins.z) + bins.w)));
-    return exp((levels_4 * -3.984375));
+    vec4 levels_3 = (vec4(before) + vec4(bins.x, two, (two + bins.z), ((two + bins.z) + bins.w)));
+    return exp((levels_3 * -3.984375));
 }
 
-float peelnet_up_to(float place, vec4 front, vec4 back) {
-    vec4 a = abs((vec4(place) - vec4(0.0, 1.0, 2.0, 3.0)));
-    vec4 b = abs((vec4(place) - vec4(4.0, 5.0, 6.0, 7.0)));
-    return (dot(front, (a - vec4(a.yzw, b.x))) + dot(back, (b - vec4(b.yzw, abs((place - 8.0))))));
+vec2 peelnet_range_of(float zeta_1) {
+    float level_1 = (127.5 * (zeta_1 + 1.0));
+    return (vec2((255.0 - floor(level_1)), ceil(level_1)) / vec2(255.0));
+}
+
+vec2 peelnet_ends_of(vec2 range_1) {
+    vec2 levels_4 = floor(((range_1 * 255.0) + vec2(0.5)));
+    float nearest_2 = (255.0 - levels_4.x);
+    return vec2(nearest_2, max(levels_4.y, (nearest_2 + 1.0)));
+}
+
+PeelnetBins peelnet_bins(float alpha_1, float zeta_2) {
+    float place_5 = clamp(((zeta_2 * 4.0) + 3.5), 0.0, 7.0);
+    float _e9 = peelnet_absorbance(alpha_1);
+    float _e10 = peelnet_level(_e9);
+    vec4 _e12 = peelnet_in_bins(_e10, place_5, 0.0);
+    vec4 _e14 = peelnet_in_bins(_e10, place_5, 4.0);
+    vec2 _e15 = peelnet_range_of(zeta_2);
+    return PeelnetBins(_e12, _e14, _e15);
+}
+
+float peelnet_up_to(float place_1, vec4 front, vec4 back) {
+    vec4 a = abs((vec4(place_1) - vec4(0.0, 1.0, 2.0, 3.0)));
+    vec4 b = abs((vec4(place_1) - vec4(4.0, 5.0, 6.0, 7.0)));
+    return (dot(front, (a - vec4(a.yzw, b.x))) + dot(back, (b - vec4(b.yzw, abs((place_1 - 8.0))))));
 }
 
 float peelnet_in_pixel(float zeta_3, vec4 front_1, vec4 back_1, vec2 range_2) {
-    float place_5 = ((zeta_3 * 4.0) + 4.0);
+    float place_6 = ((zeta_3 * 4.0) + 4.0);
     vec4 _e9 = peelnet_seen_behind(0.0, front_1);
     vec4 _e13 = peelnet_seen_behind(dot(front_1, vec4(1.0)), back_1);
     vec4 of_front = sqrt(abs((vec4(1.0, _e9.xyz) - _e9)));
@@ -183,9 +193,9 @@ float peelnet_in_pixel(float zeta_3, vec4 front_1, vec4 back_1, vec2 range_2) {
     float _e30 = peelnet_up_to(ends_1.x, of_front, of_back);
     float _e32 = peelnet_up_to(ends_1.y, of_front, of_back);
     float all_ = (_e32 - _e30);
-    float _e34 = peelnet_up_to(place_5, of_front, of_back);
+    float _e34 = peelnet_up_to(place_6, of_front, of_back);
     float passed_1 = ((_e34 - _e30) / max(all_, 1e-6));
-    return ((all_ == 0.0) ? sqrt((place_5 * 0.125)) : clamp(passed_1, 0.0, 1.0));
+    return ((all_ == 0.0) ? sqrt((place_6 * 0.125)) : clamp(passed_1, 0.0, 1.0));
 }
 
 float peelnet_of_slab(vec4 values, float slab) {
@@ -194,8 +204,8 @@ float peelnet_of_slab(vec4 values, float slab) {
 
 PeelnetPlace peelnet_place(float alpha_2, float t) {
     float _e2 = peelnet_absorbance(alpha_2);
-    float first_1 = ((t >= PEELNET_FIRST_END) ? 1.0 : 0.0);
-    float passed_2 = ((first_1 + ((t >= PEELNET_SECOND_END) ? 1.0 : 0.0)) + ((t >= PEELNET_THIRD_END) ? 1.0 : 0.0));
+    float first_2 = ((t >= PEELNET_FIRST_END) ? 1.0 : 0.0);
+    float passed_2 = ((first_2 + ((t >= PEELNET_SECOND_END) ? 1.0 : 0.0)) + ((t >= PEELNET_THIRD_END) ? 1.0 : 0.0));
     float slab_2 = min(passed_2, PEELNET_LAST_SLAB);
     float _e27 = peelnet_of_slab(vec4(0.0, 0.34, 0.68, 0.87), slab_2);
     float _e33 = peelnet_of_slab(vec4(0.34, 0.68, 0.87, 1.0), slab_2);
@@ -206,8 +216,8 @@ PeelnetPlace peelnet_place(float alpha_2, float t) {
     return PeelnetPlace(_e2, slab_2, ((2.0 * inside) - 1.0), bin_1, near_2, ((bin_1 * PEELNET_OPACITIES) + opacity));
 }
 
-vec2 peelnet_records(float alpha_3, PeelnetPlace place_1) {
-    vec3 _e6 = peelnet_halves(vec3(place_1.near, place_1.far, place_1.far));
+vec2 peelnet_records(float alpha_3, PeelnetPlace place_2) {
+    vec3 _e6 = peelnet_halves(vec3(place_2.near, place_2.far, place_2.far));
     vec2 levels_5 = _e6.xy;
     return ((alpha_3 < PEELNET_FAINT) ? vec2(-65504.0) : levels_5);
 }
@@ -225,12 +235,12 @@ vec4 peelnet_in_slab(float value, float slab_1, float elsewhere) {
     return vec4(((slab_1 == 0.0) ? value : elsewhere), ((slab_1 == 1.0) ? value : elsewhere), ((slab_1 == 2.0) ? value : elsewhere), ((slab_1 == 3.0) ? value : elsewhere));
 }
 
-PeelnetBetween peelnet_between(PeelnetPlace place_2, float total, float first, vec2 levels_2) {
+PeelnetBetween peelnet_between(PeelnetPlace place_3, float total, float first_1, vec2 levels_2) {
     bool local = false;
     bool local_1 = false;
     float begin = 0.0;
     float end = 0.0;
-    float b_1 = place_2.absorbance;
+    float b_1 = place_3.absorbance;
     float others = max((total - b_1), 0.0);
     float noise = max((total * 0.0009765625), 1e-6);
     float near_back = floor((levels_2.x * 0.03125));
@@ -238,7 +248,7 @@ PeelnetBetween peelnet_between(PeelnetPlace place_2, float total, float first, v
     float near_level = (levels_2.x + ((near_bin - near_back) * PEELNET_OPACITIES));
     vec2 _e23 = peelnet_absorbances_of(levels_2);
     bool all_1 = (_e23.x > (others - (((0.019354839 * (1.0 + _e23.x)) * (1.0 + _e23.x)) + noise)));
-    float near_3 = ((near_bin > place_2.bin) ? 0.0 : (all_1 ? others : _e23.x));
+    float near_3 = ((near_bin > place_3.bin) ? 0.0 : (all_1 ? others : _e23.x));
     float far_bin = floor((levels_2.y * 0.03125));
     if (!((levels_2.y == near_level))) {
         local = (levels_2.y < 0.0);
@@ -247,7 +257,7 @@ PeelnetBetween peelnet_between(PeelnetPlace place_2, float total, float first, v
     }
     bool is_one = local;
     if (!(is_one)) {
-        local_1 = (far_bin < place_2.bin);
+        local_1 = (far_bin < place_3.bin);
     } else {
         local_1 = true;
     }
@@ -260,20 +270,20 @@ PeelnetBetween peelnet_between(PeelnetPlace place_2, float total, float first, v
     float rest = (((total - b_1) - near_3) - far_2);
     float _e79 = begin;
     float _e82 = end;
-    float moment = (((first - (b_1 * place_2.inside)) - (near_3 * _e79)) - (far_2 * _e82));
+    float moment = (((first_1 - (b_1 * place_3.inside)) - (near_3 * _e79)) - (far_2 * _e82));
     float _e85 = begin;
     float _e86 = begin;
-    begin = ((_e86 > place_2.inside) ? -1.0 : _e85);
+    begin = ((_e86 > place_3.inside) ? -1.0 : _e85);
     float _e91 = end;
     float _e92 = end;
-    end = ((_e92 < place_2.inside) ? 1.0 : _e91);
-    float in_front = ((near_3 * ((near_bin == place_2.bin) ? 0.5 : 1.0)) + (far_2 * ((far_bin == place_2.bin) ? 0.5 : 0.0)));
+    end = ((_e92 < place_3.inside) ? 1.0 : _e91);
+    float in_front = ((near_3 * ((near_bin == place_3.bin) ? 0.5 : 1.0)) + (far_2 * ((far_bin == place_3.bin) ? 0.5 : 0.0)));
     float _e110 = end;
     float _e111 = begin;
     float extent_1 = max((_e110 - _e111), 0.0010416667);
     float per_extent = (1.0 / extent_1);
     float _e118 = begin;
-    float x = clamp(((place_2.inside - _e118) * per_extent), 0.0, 1.0);
+    float x = clamp(((place_3.inside - _e118) * per_extent), 0.0, 1.0);
     float _e126 = begin;
     float _e127 = end;
     float depth = clamp((moment / max(rest, noise)), _e126, _e127);
@@ -314,25 +324,25 @@ float peelnet_network(PeelnetBetween between) {
     return _e24;
 }
 
-vec2 peelnet_weigh(PeelnetPlace place_3, bool counts, vec4 absorbances, vec4 firsts, vec4 nearest, vec4 farthest, float ends) {
+vec2 peelnet_weigh(PeelnetPlace place_4, bool counts, vec4 absorbances, vec4 firsts, vec4 nearest, vec4 farthest, float ends) {
     bool local_3 = false;
     bool local_4 = false;
     bool local_5 = false;
     bool local_6 = false;
     bool local_7 = false;
     vec4 sums_2 = min(absorbances, vec4(65504.0));
-    float _e11 = peelnet_of_slab(sums_2, place_3.slab);
-    float _e13 = peelnet_of_slab(firsts, place_3.slab);
-    float first_2 = clamp(_e13, -65504.0, 65504.0);
-    float _e18 = peelnet_of_slab(nearest, place_3.slab);
-    float _e20 = peelnet_of_slab(farthest, place_3.slab);
+    float _e11 = peelnet_of_slab(sums_2, place_4.slab);
+    float _e13 = peelnet_of_slab(firsts, place_4.slab);
+    float first_3 = clamp(_e13, -65504.0, 65504.0);
+    float _e18 = peelnet_of_slab(nearest, place_4.slab);
+    float _e20 = peelnet_of_slab(farthest, place_4.slab);
     vec2 halves_1 = vec2(_e18, _e20);
     vec3 _e24 = peelnet_levels(vec3(halves_1, halves_1.y));
     vec2 decoded = _e24.xy;
-    vec2 levels_6 = ((place_3.slab < ends) ? decoded : vec2(decoded.x, -1.0));
-    float before_2 = ((((place_3.slab > 0.0) ? sums_2.x : 0.0) + ((place_3.slab > 1.0) ? sums_2.y : 0.0)) + ((place_3.slab > 2.0) ? sums_2.z : 0.0));
+    vec2 levels_6 = ((place_4.slab < ends) ? decoded : vec2(decoded.x, -1.0));
+    float before_2 = ((((place_4.slab > 0.0) ? sums_2.x : 0.0) + ((place_4.slab > 1.0) ? sums_2.y : 0.0)) + ((place_4.slab > 2.0) ? sums_2.z : 0.0));
     if (counts) {
-        bool _e56 = peelnet_is_kept(place_3.near, levels_6.x);
+        bool _e56 = peelnet_is_kept(place_4.near, levels_6.x);
         local_3 = _e56;
     } else {
         local_3 = false;
@@ -345,7 +355,7 @@ vec2 peelnet_weigh(PeelnetPlace place_3, bool counts, vec4 absorbances, vec4 fir
     }
     bool _e65 = local_4;
     if (_e65) {
-        bool _e70 = peelnet_is_kept(place_3.far, levels_6.y);
+        bool _e70 = peelnet_is_kept(place_4.far, levels_6.y);
         local_5 = _e70;
     } else {
         local_5 = false;
@@ -363,10 +373,10 @@ vec2 peelnet_weigh(PeelnetPlace place_3, bool counts, vec4 absorbances, vec4 fir
         local_7 = true;
     }
     bool known = local_7;
-    PeelnetBetween _e83 = peelnet_between(place_3, _e11, first_2, levels_6);
+    PeelnetBetween _e83 = peelnet_between(place_4, _e11, first_3, levels_6);
     float _e88 = peelnet_network(_e83);
     float share_1 = (_e83.low + ((_e83.high - _e83.low) * _e88));
-    float at_end = (is_far ? max((_e11 - place_3.absorbance), 0.0) : 0.0);
+    float at_end = (is_far ? max((_e11 - place_4.absorbance), 0.0) : 0.0);
     float inside_1 = (known ? at_end : (_e83.nearest + (_e83.absorbance * share_1)));
     return vec2(exp(-((before_2 + inside_1))), (known ? 1.0 : 0.0));
 }
@@ -399,8 +409,8 @@ vec4 peelnet_composite(vec4 sums, float coverage, vec3 transmittance, vec3 backg
     return vec4(((average * coverage) + (background * transmittance)), coverage);
 }
 
-vec4 peelnet_resolve(vec4 sums_1, float absorbance, vec3 background_1) {
-    float transmittance_1 = exp(-(absorbance));
+vec4 peelnet_resolve(vec4 sums_1, float absorbance_1, vec3 background_1) {
+    float transmittance_1 = exp(-(absorbance_1));
     vec4 _e11 = peelnet_composite(min(sums_1, vec4(65504.0)), (1.0 - transmittance_1), vec3(transmittance_1), background_1);
     return _e11;
 }

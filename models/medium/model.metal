@@ -91,8 +91,8 @@ struct PeelnetStatistics {
     metal::float4 nearest;
     metal::float4 farthest;
 };
-constant float PEELNET_FAINT = 0.003921569;
 constant float PEELNET_BIN_LEVELS = 64.0;
+constant float PEELNET_FAINT = 0.003921569;
 constant float PEELNET_BINS = 1920.0;
 constant float PEELNET_OPACITIES = 32.0;
 constant float PEELNET_EMPTY = -65504.0;
@@ -165,32 +165,20 @@ float peelnet_cut(
     return (kept_1 * (2.0 / ((2.0 - lengths.x) - lengths.y))) - 1.0;
 }
 
-metal::float2 peelnet_range_of(
-    float zeta_1
+float peelnet_level(
+    float absorbance
 ) {
-    float level = 127.5 * (zeta_1 + 1.0);
-    return metal::float2(255.0 - metal::floor(level), metal::ceil(level)) / metal::float2(255.0);
+    return metal::max(metal::floor((absorbance * PEELNET_BIN_LEVELS) + 0.5), 1.0);
 }
 
-metal::float2 peelnet_ends_of(
-    metal::float2 range_1
+metal::float4 peelnet_in_bins(
+    float level,
+    float place,
+    float first
 ) {
-    metal::float2 levels_3 = metal::floor((range_1 * 255.0) + metal::float2(0.5));
-    float nearest_2 = 255.0 - levels_3.x;
-    return metal::float2(nearest_2, metal::max(levels_3.y, nearest_2 + 1.0));
-}
-
-PeelnetBins peelnet_bins(
-    float alpha_1,
-    float zeta_2
-) {
-    metal::float4 place_4 = metal::float4(metal::clamp((zeta_2 * 4.0) + 3.5, 0.0, 7.0));
-    float _e10 = peelnet_absorbance(alpha_1);
-    float level_1 = metal::max(metal::floor((_e10 * PEELNET_BIN_LEVELS) + 0.5), 1.0);
-    metal::float4 front_2 = metal::max(metal::float4(1.0) - metal::abs(place_4 - metal::float4(0.0, 1.0, 2.0, 3.0)), metal::float4(0.0));
-    metal::float4 back_2 = metal::max(metal::float4(1.0) - metal::abs(place_4 - metal::float4(4.0, 5.0, 6.0, 7.0)), metal::float4(0.0));
-    metal::float2 _e60 = peelnet_range_of(zeta_2);
-    return PeelnetBins {metal::floor((level_1 * front_2) + metal::float4(0.5)) / metal::float4(255.0), metal::floor((level_1 * back_2) + metal::float4(0.5)) / metal::float4(255.0), _e60};
+    metal::float4 middles = metal::float4(first, first + 1.0, first + 2.0, first + 3.0);
+    metal::float4 shares = metal::max(metal::float4(1.0) - metal::abs(metal::float4(place) - middles), metal::float4(0.0));
+    return metal::floor((level * shares) + metal::float4(0.5)) / metal::float4(255.0);
 }
 
 metal::float4 peelnet_seen_behind(
@@ -198,18 +186,46 @@ metal::float4 peelnet_seen_behind(
     metal::float4 bins
 ) {
     float two = bins.x + bins.y;
-    metal::float4 levels_4 = metal::float4(before) + metal::float4(bins.x, two, two + bins.z, (two + bins.z) + bins.w);
-    return metal::exp(levels_4 * -3.984375);
+    metal::float4 levels_3 = metal::float4(before) + metal::float4(bins.x, two, two + bins.z, (two + bins.z) + bins.w);
+    return metal::exp(levels_3 * -3.984375);
+}
+
+metal::float2 peelnet_range_of(
+    float zeta_1
+) {
+    float level_1 = 127.5 * (zeta_1 + 1.0);
+    return metal::float2(255.0 - metal::floor(level_1), metal::ceil(level_1)) / metal::float2(255.0);
+}
+
+metal::float2 peelnet_ends_of(
+    metal::float2 range_1
+) {
+    metal::float2 levels_4 = metal::floor((range_1 * 255.0) + metal::float2(0.5));
+    float nearest_2 = 255.0 - levels_4.x;
+    return metal::float2(nearest_2, metal::max(levels_4.y, nearest_2 + 1.0));
+}
+
+PeelnetBins peelnet_bins(
+    float alpha_1,
+    float zeta_2
+) {
+    float place_5 = metal::clamp((zeta_2 * 4.0) + 3.5, 0.0, 7.0);
+    float _e9 = peelnet_absorbance(alpha_1);
+    float _e10 = peelnet_level(_e9);
+    metal::float4 _e12 = peelnet_in_bins(_e10, place_5, 0.0);
+    metal::float4 _e14 = peelnet_in_bins(_e10, place_5, 4.0);
+    metal::float2 _e15 = peelnet_range_of(zeta_2);
+    return PeelnetBins {_e12, _e14, _e15};
 }
 
 float peelnet_up_to(
-    float place,
+    float place_1,
     metal::float4 front,
     metal::float4 back
 ) {
-    metal::float4 a = metal::abs(metal::float4(place) - metal::float4(0.0, 1.0, 2.0, 3.0));
-    metal::float4 b = metal::abs(metal::float4(place) - metal::float4(4.0, 5.0, 6.0, 7.0));
-    return metal::dot(front, a - metal::float4(a.yzw, b.x)) + metal::dot(back, b - metal::float4(b.yzw, metal::abs(place - 8.0)));
+    metal::float4 a = metal::abs(metal::float4(place_1) - metal::float4(0.0, 1.0, 2.0, 3.0));
+    metal::float4 b = metal::abs(metal::float4(place_1) - metal::float4(4.0, 5.0, 6.0, 7.0));
+    return metal::dot(front, a - metal::float4(a.yzw, b.x)) + metal::dot(back, b - metal::float4(b.yzw, metal::abs(place_1 - 8.0)));
 }
 
 float peelnet_in_pixel(
@@ -218,7 +234,7 @@ float peelnet_in_pixel(
     metal::float4 back_1,
     metal::float2 range_2
 ) {
-    float place_5 = (zeta_3 * 4.0) + 4.0;
+    float place_6 = (zeta_3 * 4.0) + 4.0;
     metal::float4 _e9 = peelnet_seen_behind(0.0, front_1);
     metal::float4 _e13 = peelnet_seen_behind(metal::dot(front_1, metal::float4(1.0)), back_1);
     metal::float4 of_front = metal::sqrt(metal::abs(metal::float4(1.0, _e9.xyz) - _e9));
@@ -228,9 +244,9 @@ float peelnet_in_pixel(
     float _e30 = peelnet_up_to(ends_1.x, of_front, of_back);
     float _e32 = peelnet_up_to(ends_1.y, of_front, of_back);
     float all = _e32 - _e30;
-    float _e34 = peelnet_up_to(place_5, of_front, of_back);
+    float _e34 = peelnet_up_to(place_6, of_front, of_back);
     float passed_1 = (_e34 - _e30) / metal::max(all, 0.000001);
-    return (all == 0.0) ? metal::sqrt(place_5 * 0.125) : metal::clamp(passed_1, 0.0, 1.0);
+    return (all == 0.0) ? metal::sqrt(place_6 * 0.125) : metal::clamp(passed_1, 0.0, 1.0);
 }
 
 float peelnet_of_slab(
@@ -245,8 +261,8 @@ PeelnetPlace peelnet_place(
     float t
 ) {
     float _e2 = peelnet_absorbance(alpha_2);
-    float first_1 = (t >= PEELNET_FIRST_END) ? 1.0 : 0.0;
-    float passed_2 = (first_1 + ((t >= PEELNET_SECOND_END) ? 1.0 : 0.0)) + ((t >= PEELNET_THIRD_END) ? 1.0 : 0.0);
+    float first_2 = (t >= PEELNET_FIRST_END) ? 1.0 : 0.0;
+    float passed_2 = (first_2 + ((t >= PEELNET_SECOND_END) ? 1.0 : 0.0)) + ((t >= PEELNET_THIRD_END) ? 1.0 : 0.0);
     float slab_2 = metal::min(passed_2, PEELNET_LAST_SLAB);
     float _e27 = peelnet_of_slab(metal::float4(0.0, 0.475, 0.81, 1.0), slab_2);
     float _e33 = peelnet_of_slab(metal::float4(0.475, 0.81, 1.0, 1.0), slab_2);
@@ -259,9 +275,9 @@ PeelnetPlace peelnet_place(
 
 metal::float2 peelnet_records(
     float alpha_3,
-    PeelnetPlace place_1
+    PeelnetPlace place_2
 ) {
-    metal::float3 _e6 = peelnet_halves(metal::float3(place_1.near, place_1.far, place_1.far));
+    metal::float3 _e6 = peelnet_halves(metal::float3(place_2.near, place_2.far, place_2.far));
     metal::float2 levels_5 = _e6.xy;
     return (alpha_3 < PEELNET_FAINT) ? metal::float2(-65504.0) : levels_5;
 }
@@ -288,16 +304,16 @@ metal::float4 peelnet_in_slab(
 }
 
 PeelnetBetween peelnet_between(
-    PeelnetPlace place_2,
+    PeelnetPlace place_3,
     float total,
-    float first,
+    float first_1,
     metal::float2 levels_2
 ) {
     bool local = {};
     bool local_1 = {};
     float begin = {};
     float end = {};
-    float b_1 = place_2.absorbance;
+    float b_1 = place_3.absorbance;
     float others = metal::max(total - b_1, 0.0);
     float noise = metal::max(total * 0.0009765625, 0.000001);
     float near_back = metal::floor(levels_2.x * 0.03125);
@@ -305,7 +321,7 @@ PeelnetBetween peelnet_between(
     float near_level = levels_2.x + ((near_bin - near_back) * PEELNET_OPACITIES);
     metal::float2 _e23 = peelnet_absorbances_of(levels_2);
     bool all_1 = _e23.x > (others - (((0.019354839 * (1.0 + _e23.x)) * (1.0 + _e23.x)) + noise));
-    float near_3 = (near_bin > place_2.bin) ? 0.0 : (all_1 ? others : _e23.x);
+    float near_3 = (near_bin > place_3.bin) ? 0.0 : (all_1 ? others : _e23.x);
     float far_bin = metal::floor(levels_2.y * 0.03125);
     if (!((levels_2.y == near_level))) {
         local = levels_2.y < 0.0;
@@ -314,7 +330,7 @@ PeelnetBetween peelnet_between(
     }
     bool is_one = local;
     if (!(is_one)) {
-        local_1 = far_bin < place_2.bin;
+        local_1 = far_bin < place_3.bin;
     } else {
         local_1 = true;
     }
@@ -327,20 +343,20 @@ PeelnetBetween peelnet_between(
     float rest = ((total - b_1) - near_3) - far_2;
     float _e79 = begin;
     float _e82 = end;
-    float moment = ((first - (b_1 * place_2.inside)) - (near_3 * _e79)) - (far_2 * _e82);
+    float moment = ((first_1 - (b_1 * place_3.inside)) - (near_3 * _e79)) - (far_2 * _e82);
     float _e85 = begin;
     float _e86 = begin;
-    begin = (_e86 > place_2.inside) ? -1.0 : _e85;
+    begin = (_e86 > place_3.inside) ? -1.0 : _e85;
     float _e91 = end;
     float _e92 = end;
-    end = (_e92 < place_2.inside) ? 1.0 : _e91;
-    float in_front = (near_3 * ((near_bin == place_2.bin) ? 0.5 : 1.0)) + (far_2 * ((far_bin == place_2.bin) ? 0.5 : 0.0));
+    end = (_e92 < place_3.inside) ? 1.0 : _e91;
+    float in_front = (near_3 * ((near_bin == place_3.bin) ? 0.5 : 1.0)) + (far_2 * ((far_bin == place_3.bin) ? 0.5 : 0.0));
     float _e110 = end;
     float _e111 = begin;
     float extent_1 = metal::max(_e110 - _e111, 0.0010416667);
     float per_extent = 1.0 / extent_1;
     float _e118 = begin;
-    float x = metal::clamp((place_2.inside - _e118) * per_extent, 0.0, 1.0);
+    float x = metal::clamp((place_3.inside - _e118) * per_extent, 0.0, 1.0);
     float _e126 = begin;
     float _e127 = end;
     float depth = metal::clamp(moment / metal::max(rest, noise), _e126, _e127);
@@ -398,7 +414,7 @@ float peelnet_network(
 }
 
 metal::float2 peelnet_weigh(
-    PeelnetPlace place_3,
+    PeelnetPlace place_4,
     bool counts,
     metal::float4 absorbances,
     metal::float4 firsts,
@@ -412,18 +428,18 @@ metal::float2 peelnet_weigh(
     bool local_6 = {};
     bool local_7 = {};
     metal::float4 sums_2 = metal::min(absorbances, metal::float4(65504.0));
-    float _e11 = peelnet_of_slab(sums_2, place_3.slab);
-    float _e13 = peelnet_of_slab(firsts, place_3.slab);
-    float first_2 = metal::clamp(_e13, -65504.0, 65504.0);
-    float _e18 = peelnet_of_slab(nearest, place_3.slab);
-    float _e20 = peelnet_of_slab(farthest, place_3.slab);
+    float _e11 = peelnet_of_slab(sums_2, place_4.slab);
+    float _e13 = peelnet_of_slab(firsts, place_4.slab);
+    float first_3 = metal::clamp(_e13, -65504.0, 65504.0);
+    float _e18 = peelnet_of_slab(nearest, place_4.slab);
+    float _e20 = peelnet_of_slab(farthest, place_4.slab);
     metal::float2 halves_1 = metal::float2(_e18, _e20);
     metal::float3 _e24 = peelnet_levels(metal::float3(halves_1, halves_1.y));
     metal::float2 decoded = _e24.xy;
-    metal::float2 levels_6 = (place_3.slab < ends) ? decoded : metal::float2(decoded.x, -1.0);
-    float before_2 = (((place_3.slab > 0.0) ? sums_2.x : 0.0) + ((place_3.slab > 1.0) ? sums_2.y : 0.0)) + ((place_3.slab > 2.0) ? sums_2.z : 0.0);
+    metal::float2 levels_6 = (place_4.slab < ends) ? decoded : metal::float2(decoded.x, -1.0);
+    float before_2 = (((place_4.slab > 0.0) ? sums_2.x : 0.0) + ((place_4.slab > 1.0) ? sums_2.y : 0.0)) + ((place_4.slab > 2.0) ? sums_2.z : 0.0);
     if (counts) {
-        bool _e56 = peelnet_is_kept(place_3.near, levels_6.x);
+        bool _e56 = peelnet_is_kept(place_4.near, levels_6.x);
         local_3 = _e56;
     } else {
         local_3 = false;
@@ -436,7 +452,7 @@ metal::float2 peelnet_weigh(
     }
     bool _e65 = local_4;
     if (_e65) {
-        bool _e70 = peelnet_is_kept(place_3.far, levels_6.y);
+        bool _e70 = peelnet_is_kept(place_4.far, levels_6.y);
         local_5 = _e70;
     } else {
         local_5 = false;
@@ -454,10 +470,10 @@ metal::float2 peelnet_weigh(
         local_7 = true;
     }
     bool known = local_7;
-    PeelnetBetween _e83 = peelnet_between(place_3, _e11, first_2, levels_6);
+    PeelnetBetween _e83 = peelnet_between(place_4, _e11, first_3, levels_6);
     float _e88 = peelnet_network(_e83);
     float share_1 = _e83.low + ((_e83.high - _e83.low) * _e88);
-    float at_end = is_far ? metal::max(_e11 - place_3.absorbance, 0.0) : 0.0;
+    float at_end = is_far ? metal::max(_e11 - place_4.absorbance, 0.0) : 0.0;
     float inside_1 = known ? at_end : (_e83.nearest + (_e83.absorbance * share_1));
     return metal::float2(metal::exp(-((before_2 + inside_1))), known ? 1.0 : 0.0);
 }
@@ -507,10 +523,10 @@ metal::float4 peelnet_composite(
 
 metal::float4 peelnet_resolve(
     metal::float4 sums_1,
-    float absorbance,
+    float absorbance_1,
     metal::float3 background_1
 ) {
-    float transmittance_1 = metal::exp(-(absorbance));
+    float transmittance_1 = metal::exp(-(absorbance_1));
     metal::float4 _e11 = peelnet_composite(metal::min(sums_1, metal::float4(65504.0)), 1.0 - transmittance_1, metal::float3(transmittance_1), background_1);
     return _e11;
 }

@@ -98,11 +98,11 @@ struct PeelnetShares {
     int _end_pad_0;
 };
 
+static const float PEELNET_BIN_LEVELS = 64.0;
 static const float PEELNET_TILE_DEPTHS = 240.0;
 static const float PEELNET_TILE_OPACITIES = 256.0;
 static const float PEELNET_DEPTHS = 480.0;
 static const float PEELNET_VALUES = 128.0;
-static const float PEELNET_BIN_LEVELS = 64.0;
 static const float PEELNET_MOST = 0.9411765;
 
 PeelnetRange ConstructPeelnetRange(float arg0, float arg1, float arg2) {
@@ -158,6 +158,33 @@ float3 peelnet_levels(float3 halves)
     return ((30719.5).xxx + (sign(halves) * from_middle_1));
 }
 
+float peelnet_cut(float zeta, float4 gaps)
+{
+    float2 lengths = (gaps.yw - gaps.xz);
+    float2 passed = clamp(((zeta).xx - gaps.xz), (0.0).xx, lengths);
+    float kept = (((zeta + 1.0) - passed.x) - passed.y);
+    return ((kept * (2.0 / ((2.0 - lengths.x) - lengths.y))) - 1.0);
+}
+
+float peelnet_level(float absorbance)
+{
+    return max(floor(((absorbance * PEELNET_BIN_LEVELS) + 0.5)), 1.0);
+}
+
+float4 peelnet_in_bins(float level, float place, float first)
+{
+    float4 middles = float4(first, (first + 1.0), (first + 2.0), (first + 3.0));
+    float4 shares = max(((1.0).xxxx - abs(((place).xxxx - middles))), (0.0).xxxx);
+    return (floor(((level * shares) + (0.5).xxxx)) / (255.0).xxxx);
+}
+
+float4 peelnet_seen_behind(float before, float4 bins)
+{
+    float two = (bins.x + bins.y);
+    float4 levels_1 = ((before).xxxx + float4(bins.x, two, (two + bins.z), ((two + bins.z) + bins.w)));
+    return exp((levels_1 * -3.984375));
+}
+
 float peelnet_noise(uint2 pixel)
 {
     return (float((((pixel.x * 12664746u) + (pixel.y * 9560334u)) & 16777215u)) * 5.9604645e-8);
@@ -168,14 +195,6 @@ float4 peelnet_even()
     return float4(0.06, 0.35, 0.65, 0.94);
 }
 
-float peelnet_cut(float zeta, float4 gaps)
-{
-    float2 lengths = (gaps.yw - gaps.xz);
-    float2 passed = clamp(((zeta).xx - gaps.xz), (0.0).xx, lengths);
-    float kept = (((zeta + 1.0) - passed.x) - passed.y);
-    return ((kept * (2.0 / ((2.0 - lengths.x) - lengths.y))) - 1.0);
-}
-
 float peelnet_place_among(float depth, float4 quantiles)
 {
     float4 begin = float4(0.0, quantiles.xyz);
@@ -184,28 +203,22 @@ float peelnet_place_among(float depth, float4 quantiles)
     return (dot(parts, float4(0.06, 0.29, 0.3, 0.29)) + (0.06 * last));
 }
 
-float4 peelnet_in_bins(float level, float depth_1, float first)
+float4x4 peelnet_tile_levels(float level_1, float depth_1)
 {
-    float place_2 = (clamp(((depth_1 * 16.0) - 0.5), 0.0, 15.0) - first);
-    float4 shares = max(((1.0).xxxx - abs(((place_2).xxxx - float4(0.0, 1.0, 2.0, 3.0)))), (0.0).xxxx);
-    return floor(((level * shares) + (0.5).xxxx));
-}
-
-float peelnet_level(float absorbance)
-{
-    return max(floor(((absorbance * PEELNET_BIN_LEVELS) + 0.5)), 1.0);
+    float place_3 = clamp(((depth_1 * 16.0) - 0.5), 0.0, 15.0);
+    const float4 _e10 = peelnet_in_bins(level_1, place_3, 0.0);
+    const float4 _e12 = peelnet_in_bins(level_1, place_3, 4.0);
+    const float4 _e14 = peelnet_in_bins(level_1, place_3, 8.0);
+    const float4 _e16 = peelnet_in_bins(level_1, place_3, 12.0);
+    return float4x4(_e10, _e12, _e14, _e16);
 }
 
 float4x4 peelnet_tile_bins(float alpha_1, float zeta_1)
 {
     const float _e2 = peelnet_absorbance(alpha_1);
     const float _e3 = peelnet_level(_e2);
-    float depth_3 = ((0.5 * zeta_1) + 0.5);
-    const float4 _e9 = peelnet_in_bins(_e3, depth_3, 0.0);
-    const float4 _e14 = peelnet_in_bins(_e3, depth_3, 4.0);
-    const float4 _e19 = peelnet_in_bins(_e3, depth_3, 8.0);
-    const float4 _e24 = peelnet_in_bins(_e3, depth_3, 12.0);
-    return float4x4((_e9 / (255.0).xxxx), (_e14 / (255.0).xxxx), (_e19 / (255.0).xxxx), (_e24 / (255.0).xxxx));
+    const float4x4 _e8 = peelnet_tile_levels(_e3, ((0.5 * zeta_1) + 0.5));
+    return _e8;
 }
 
 float peelnet_tile_nearest(float alpha_2, float zeta_2)
@@ -217,79 +230,65 @@ float peelnet_tile_nearest(float alpha_2, float zeta_2)
     return _e26.x;
 }
 
-float4 peelnet_seen(float4 bins, float4 taken, float front)
+float4 peelnet_before(float4x4 bins_1)
 {
-    float two = (bins.x + bins.y);
-    float4 before_2 = ((front).xxxx + float4(0.0, bins.x, two, (two + bins.z)));
-    float4 seen_2 = (exp((before_2 * -0.015625)) - exp(((before_2 + bins) * -0.015625)));
-    return ((seen_2 * max((bins - taken), (0.0).xxxx)) / max(bins, (1.0).xxxx));
+    float4 all_ = mul(bins_1, (1.0).xxxx);
+    return float4(0.0, all_.x, (all_.x + all_.y), ((all_.x + all_.y) + all_.z));
 }
 
-float4x4 peelnet_tile_seen(float4x4 bins_1, float nearest)
+float4 peelnet_seen(float4 bins_2, float4 taken, float before_1)
 {
-    float4 a = floor(((bins_1[0] * 255.0) + (0.5).xxxx));
-    float4 b_3 = floor(((bins_1[1] * 255.0) + (0.5).xxxx));
-    float4 c = floor(((bins_1[2] * 255.0) + (0.5).xxxx));
-    float4 d = floor(((bins_1[3] * 255.0) + (0.5).xxxx));
-    const float3 _e31 = peelnet_levels((nearest).xxx);
-    float level_1 = max(_e31.x, 0.0);
-    float back = floor((level_1 * 0.00390625));
-    float opacity_1 = ((level_1 - (back * PEELNET_TILE_OPACITIES)) * 0.003921569);
-    float depth_4 = (((PEELNET_TILE_DEPTHS - back) - 0.5) / PEELNET_TILE_DEPTHS);
-    const float _e52 = peelnet_level((opacity_1 / (1.0625 - opacity_1)));
-    float to_b = dot(a, (1.0).xxxx);
-    float to_c = (to_b + dot(b_3, (1.0).xxxx));
-    float to_d = (to_c + dot(c, (1.0).xxxx));
-    const float4 _e65 = peelnet_in_bins(_e52, depth_4, 0.0);
-    const float4 _e67 = peelnet_seen(a, _e65, 0.0);
-    const float4 _e69 = peelnet_in_bins(_e52, depth_4, 4.0);
-    const float4 _e70 = peelnet_seen(b_3, _e69, to_b);
-    const float4 _e72 = peelnet_in_bins(_e52, depth_4, 8.0);
-    const float4 _e73 = peelnet_seen(c, _e72, to_c);
-    const float4 _e75 = peelnet_in_bins(_e52, depth_4, 12.0);
-    const float4 _e76 = peelnet_seen(d, _e75, to_d);
-    return float4x4(_e67, _e70, _e73, _e76);
+    const float4 _e3 = peelnet_seen_behind(before_1, bins_2);
+    float4 seen_2 = (float4(exp((before_1 * -3.984375)), _e3.xyz) - _e3);
+    return ((seen_2 * max((bins_2 - taken), (0.0).xxxx)) / max(bins_2, (0.003921569).xxxx));
 }
 
-float peelnet_passed(float share, float before, float4 bins_2)
+float4x4 peelnet_tile_seen(float4x4 bins_3, float nearest)
 {
-    float two_1 = (bins_2.x + bins_2.y);
-    float4 begin_1 = ((before).xxxx + float4(0.0, bins_2.x, two_1, (two_1 + bins_2.z)));
-    return dot(clamp((((share).xxxx - begin_1) / max(bins_2, (1e-9).xxxx)), (0.0).xxxx, (1.0).xxxx), (1.0).xxxx);
+    const float3 _e3 = peelnet_levels((nearest).xxx);
+    float level_2 = max(_e3.x, 0.0);
+    float back = floor((level_2 * 0.00390625));
+    float opacity_1 = ((level_2 - (back * PEELNET_TILE_OPACITIES)) * 0.003921569);
+    float depth_3 = (((PEELNET_TILE_DEPTHS - back) - 0.5) / PEELNET_TILE_DEPTHS);
+    const float _e24 = peelnet_level((opacity_1 / (1.0625 - opacity_1)));
+    const float4x4 _e25 = peelnet_tile_levels(_e24, depth_3);
+    const float4 _e26 = peelnet_before(bins_3);
+    const float4 _e30 = peelnet_seen(bins_3[0], _e25[0], _e26.x);
+    const float4 _e34 = peelnet_seen(bins_3[1], _e25[1], _e26.y);
+    const float4 _e38 = peelnet_seen(bins_3[2], _e25[2], _e26.z);
+    const float4 _e42 = peelnet_seen(bins_3[3], _e25[3], _e26.w);
+    return float4x4(_e30, _e34, _e38, _e42);
+}
+
+float peelnet_passed(float share, float before_2, float4 bins_4)
+{
+    float two_1 = (bins_4.x + bins_4.y);
+    float4 begin_1 = ((before_2).xxxx + float4(0.0, bins_4.x, two_1, (two_1 + bins_4.z)));
+    return dot(clamp((((share).xxxx - begin_1) / max(bins_4, (1e-9).xxxx)), (0.0).xxxx, (1.0).xxxx), (1.0).xxxx);
+}
+
+float peelnet_depth_at(float share_1, float4x4 bins_5, float4 before_3)
+{
+    const float _e5 = peelnet_passed(share_1, before_3.x, bins_5[0]);
+    const float _e8 = peelnet_passed(share_1, before_3.y, bins_5[1]);
+    float front = (_e5 + _e8);
+    const float _e12 = peelnet_passed(share_1, before_3.z, bins_5[2]);
+    const float _e16 = peelnet_passed(share_1, before_3.w, bins_5[3]);
+    return (0.0625 * ((front + _e12) + _e16));
 }
 
 float4 peelnet_quantiles(float4x4 seen)
 {
-    float4 a_1 = (seen[0] + (0.00125).xxxx);
-    float4 b_4 = (seen[1] + (0.00125).xxxx);
-    float4 c_1 = (seen[2] + (0.00125).xxxx);
-    float4 d_1 = (seen[3] + (0.00125).xxxx);
-    float to_b_1 = dot(a_1, (1.0).xxxx);
-    float to_c_1 = (to_b_1 + dot(b_4, (1.0).xxxx));
-    float to_d_1 = (to_c_1 + dot(c_1, (1.0).xxxx));
-    const float4 _e28 = peelnet_even();
-    float4 shares_1 = (_e28 * (to_d_1 + dot(d_1, (1.0).xxxx)));
-    const float _e36 = peelnet_passed(shares_1.x, 0.0, a_1);
-    const float _e38 = peelnet_passed(shares_1.x, to_b_1, b_4);
-    const float _e41 = peelnet_passed(shares_1.x, to_c_1, c_1);
-    const float _e44 = peelnet_passed(shares_1.x, to_d_1, d_1);
-    float first_1 = (((_e36 + _e38) + _e41) + _e44);
-    const float _e48 = peelnet_passed(shares_1.y, 0.0, a_1);
-    const float _e50 = peelnet_passed(shares_1.y, to_b_1, b_4);
-    const float _e53 = peelnet_passed(shares_1.y, to_c_1, c_1);
-    const float _e56 = peelnet_passed(shares_1.y, to_d_1, d_1);
-    float second = (((_e48 + _e50) + _e53) + _e56);
-    const float _e60 = peelnet_passed(shares_1.z, 0.0, a_1);
-    const float _e62 = peelnet_passed(shares_1.z, to_b_1, b_4);
-    const float _e65 = peelnet_passed(shares_1.z, to_c_1, c_1);
-    const float _e68 = peelnet_passed(shares_1.z, to_d_1, d_1);
-    float third = (((_e60 + _e62) + _e65) + _e68);
-    const float _e72 = peelnet_passed(shares_1.w, 0.0, a_1);
-    const float _e74 = peelnet_passed(shares_1.w, to_b_1, b_4);
-    const float _e77 = peelnet_passed(shares_1.w, to_c_1, c_1);
-    const float _e80 = peelnet_passed(shares_1.w, to_d_1, d_1);
-    float fourth = (((_e72 + _e74) + _e77) + _e80);
-    return (float4(first_1, second, third, fourth) * 0.0625);
+    float4 even = (0.00125).xxxx;
+    float4x4 bins_6 = (seen + float4x4(even, even, even, even));
+    const float4 _e5 = peelnet_before(bins_6);
+    const float4 _e6 = peelnet_even();
+    float4 shares_1 = (_e6 * (_e5.w + dot(bins_6[3], (1.0).xxxx)));
+    const float _e15 = peelnet_depth_at(shares_1.x, bins_6, _e5);
+    const float _e17 = peelnet_depth_at(shares_1.y, bins_6, _e5);
+    const float _e19 = peelnet_depth_at(shares_1.z, bins_6, _e5);
+    const float _e21 = peelnet_depth_at(shares_1.w, bins_6, _e5);
+    return float4(_e15, _e17, _e19, _e21);
 }
 
 float4 peelnet_to_unit(float4 values)
@@ -304,14 +303,14 @@ float4 peelnet_from_unit(float4 units)
     return (shares_2 / ((1.0).xxxx - shares_2));
 }
 
-float4 peelnet_record(float b, float3 rgb, float depth_2, float place, float noise_)
+float4 peelnet_record(float b, float3 rgb, float depth_2, float place_1, float noise_)
 {
-    float bin_1 = clamp(floor(((0.5 * (depth_2 + place)) * PEELNET_DEPTHS)), 0.0, 479.0);
+    float bin_1 = clamp(floor(((0.5 * (depth_2 + place_1)) * PEELNET_DEPTHS)), 0.0, 479.0);
     const float4 _e16 = peelnet_to_unit(float4(rgb, b));
     float4 values_1 = min(floor(((_e16 * 127.0) + (noise_).xxxx)), (127.0).xxxx);
-    float4 levels_1 = (values_1 + (((479.0 - bin_1) * PEELNET_VALUES)).xxxx);
-    const float3 _e30 = peelnet_halves(levels_1.xyz);
-    const float3 _e32 = peelnet_halves(levels_1.www);
+    float4 levels_2 = (values_1 + (((479.0 - bin_1) * PEELNET_VALUES)).xxxx);
+    const float3 _e30 = peelnet_halves(levels_2.xyz);
+    const float3 _e32 = peelnet_halves(levels_2.www);
     return float4(_e30, _e32.x);
 }
 
@@ -330,9 +329,9 @@ PeelnetNearest peelnet_nearest(float4 halves_1, float4 sums, float4 quantiles_1,
 {
     const float3 _e5 = peelnet_levels(halves_1.xyz);
     const float3 _e7 = peelnet_levels(halves_1.www);
-    float4 levels_2 = max(float4(_e5, _e7.x), (0.0).xxxx);
-    float4 back_1 = floor((levels_2 * 0.0078125));
-    float4 steps = ((levels_2 - (back_1 * PEELNET_VALUES)) + ((0.5 - noise_1)).xxxx);
+    float4 levels_3 = max(float4(_e5, _e7.x), (0.0).xxxx);
+    float4 back_1 = floor((levels_3 * 0.0078125));
+    float4 steps = ((levels_3 - (back_1 * PEELNET_VALUES)) + ((0.5 - noise_1)).xxxx);
     float4 units_1 = clamp((steps / (127.0).xxxx), (0.0).xxxx, (1.0).xxxx);
     const float4 _e31 = peelnet_from_unit(units_1);
     float on_scale = (((PEELNET_DEPTHS - back_1.w) - 0.5) / PEELNET_DEPTHS);
@@ -350,9 +349,9 @@ PeelnetNearest peelnet_nearest(float4 halves_1, float4 sums, float4 quantiles_1,
     return peelnetnearest;
 }
 
-float4 peelnet_behind(float3 rgb_1, float b_1, float share_1, PeelnetNearest nearest_1)
+float4 peelnet_behind(float3 rgb_1, float b_1, float share_2, PeelnetNearest nearest_1)
 {
-    float taken_1 = (nearest_1.absorbance * share_1);
+    float taken_1 = (nearest_1.absorbance * share_2);
     return float4(max((min(rgb_1, (65504.0).xxx) - (taken_1 * nearest_1.color)), (0.0).xxx), max((b_1 - taken_1), 0.0));
 }
 
@@ -394,12 +393,12 @@ PeelnetAhead ConstructPeelnetAhead(float arg0, float arg1, float arg2, float arg
     return ret;
 }
 
-float peelnet_part(float own, float before_1, float previous, float next, float total, float number_1, PeelnetNearest nearest_2)
+float peelnet_part(float own, float before_4, float previous, float next, float total, float number_1, PeelnetNearest nearest_2)
 {
     const float _e7 = peelnet_inside(own);
-    float ahead_1 = (before_1 + _e7);
+    float ahead_1 = (before_4 + _e7);
     float scale = (1.0 / max(total, 1e-6));
-    PeelnetAhead known = ConstructPeelnetAhead(ahead_1, total, (before_1 * scale), (own * scale), (previous * scale), (next * scale), nearest_2.alpha, nearest_2.place, number_1);
+    PeelnetAhead known = ConstructPeelnetAhead(ahead_1, total, (before_4 * scale), (own * scale), (previous * scale), (next * scale), nearest_2.alpha, nearest_2.place, number_1);
     const float _e22 = peelnet_network(known);
     return exp(((-2.0 * ahead_1) * _e22));
 }
@@ -417,14 +416,14 @@ PeelnetShares ConstructPeelnetShares(float3 arg0, float3 arg1) {
     return ret;
 }
 
-PeelnetShares peelnet_shares(float place_1)
+PeelnetShares peelnet_shares(float place_2)
 {
-    float3 off_front = (((place_1).xxx - float3(0.199, 0.315, 0.495)) * float3(14.492754, 13.513514, 13.888889));
-    float3 off_back = (((place_1).xxx - float3(0.635, 0.784, 0.948)) * float3(17.24138, 14.705881, 10.752687));
+    float3 off_front = (((place_2).xxx - float3(0.199, 0.315, 0.495)) * float3(14.492754, 13.513514, 13.888889));
+    float3 off_back = (((place_2).xxx - float3(0.635, 0.784, 0.948)) * float3(17.24138, 14.705881, 10.752687));
     float3 front_1 = exp(((-0.5 * off_front) * off_front));
     float3 back_2 = exp(((-0.5 * off_back) * off_back));
-    float3 all_ = (front_1 + back_2);
-    float scale_1 = (1.0 / ((all_.x + all_.y) + all_.z));
+    float3 all_1 = (front_1 + back_2);
+    float scale_1 = (1.0 / ((all_1.x + all_1.y) + all_1.z));
     const PeelnetShares peelnetshares = ConstructPeelnetShares((front_1 * scale_1), (back_2 * scale_1));
     return peelnetshares;
 }
@@ -445,9 +444,9 @@ PeelnetStatistics ConstructPeelnetStatistics(float4 arg0, float4 arg1, float4 ar
 PeelnetStatistics peelnet_statistics(float alpha_3, float3 rgb_2, float zeta_3, float4 quantiles_2, float noise_2)
 {
     const float _e5 = peelnet_absorbance(alpha_3);
-    float depth_5 = ((0.5 * zeta_3) + 0.5);
-    const float _e10 = peelnet_place_among(depth_5, quantiles_2);
-    const float4 _e11 = peelnet_record(_e5, rgb_2, depth_5, _e10, noise_2);
+    float depth_4 = ((0.5 * zeta_3) + 0.5);
+    const float _e10 = peelnet_place_among(depth_4, quantiles_2);
+    const float4 _e11 = peelnet_record(_e5, rgb_2, depth_4, _e10, noise_2);
     const PeelnetShares _e12 = peelnet_shares(_e10);
     float3 front_2 = (_e5 * _e12.front);
     float3 back_3 = (_e5 * _e12.back);
@@ -461,8 +460,8 @@ float4 peelnet_pixel(float4 sum_a, float4 sum_b, float4 sum_c, float4 sum_d, flo
     float3 back_4 = min(absorbances_back.xyz, (65504.0).xxx);
     float3 both = (front_3 + back_4);
     float3 colors = (((((sum_a.xyz + sum_b.xyz) + sum_c.xyz) + sum_d.xyz) + sum_e.xyz) + sum_f.xyz);
-    float4 all_1 = float4(colors, ((both.x + both.y) + both.z));
-    const PeelnetNearest _e41 = peelnet_nearest(float4(sum_a.w, sum_b.w, sum_c.w, absorbances.w), all_1, quantiles_3, noise_3);
+    float4 all_2 = float4(colors, ((both.x + both.y) + both.z));
+    const PeelnetNearest _e41 = peelnet_nearest(float4(sum_a.w, sum_b.w, sum_c.w, absorbances.w), all_2, quantiles_3, noise_3);
     const PeelnetShares _e43 = peelnet_shares(_e41.place);
     const float4 _e48 = peelnet_behind(sum_a.xyz, front_3.x, _e43.front.x, _e41);
     const float4 _e53 = peelnet_behind(sum_b.xyz, front_3.y, _e43.front.y, _e41);
@@ -470,15 +469,15 @@ float4 peelnet_pixel(float4 sum_a, float4 sum_b, float4 sum_c, float4 sum_d, flo
     const float4 _e63 = peelnet_behind(sum_d.xyz, back_4.x, _e43.back.x, _e41);
     const float4 _e68 = peelnet_behind(sum_e.xyz, back_4.y, _e43.back.y, _e41);
     const float4 _e73 = peelnet_behind(sum_f.xyz, back_4.z, _e43.back.z, _e41);
-    float to_c_2 = (_e48.w + _e53.w);
-    float to_d_2 = (to_c_2 + _e58.w);
-    float to_e = (to_d_2 + _e63.w);
+    float to_c = (_e48.w + _e53.w);
+    float to_d = (to_c + _e58.w);
+    float to_e = (to_d + _e63.w);
     float to_f = (to_e + _e68.w);
     float total_1 = (to_f + _e73.w);
     const float _e90 = peelnet_part(_e48.w, 0.0, 0.0, _e53.w, total_1, 0.0, _e41);
     const float _e97 = peelnet_part(_e53.w, _e48.w, _e48.w, _e58.w, total_1, 0.2, _e41);
-    const float _e104 = peelnet_part(_e58.w, to_c_2, _e53.w, _e63.w, total_1, 0.4, _e41);
-    const float _e111 = peelnet_part(_e63.w, to_d_2, _e58.w, _e68.w, total_1, 0.6, _e41);
+    const float _e104 = peelnet_part(_e58.w, to_c, _e53.w, _e63.w, total_1, 0.4, _e41);
+    const float _e111 = peelnet_part(_e63.w, to_d, _e58.w, _e68.w, total_1, 0.6, _e41);
     const float _e118 = peelnet_part(_e68.w, to_e, _e63.w, _e73.w, total_1, 0.8, _e41);
     const float _e125 = peelnet_part(_e73.w, to_f, _e68.w, 0.0, total_1, 1.0, _e41);
     float4 seen_3 = ((((((_e48 * _e90) + (_e53 * _e97)) + (_e58 * _e104)) + (_e63 * _e111)) + (_e68 * _e118)) + (_e73 * _e125));

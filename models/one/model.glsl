@@ -79,11 +79,11 @@ struct PeelnetStatistics {
     vec4 sum_c;
     vec4 absorbances;
 };
+const float PEELNET_BIN_LEVELS = 64.0;
 const float PEELNET_TILE_DEPTHS = 240.0;
 const float PEELNET_TILE_OPACITIES = 256.0;
 const float PEELNET_DEPTHS = 480.0;
 const float PEELNET_VALUES = 128.0;
-const float PEELNET_BIN_LEVELS = 64.0;
 const float PEELNET_MOST = 0.9411765;
 
 
@@ -121,19 +121,35 @@ vec3 peelnet_levels(vec3 halves) {
     return (vec3(30719.5) + (sign(halves) * from_middle_1));
 }
 
+float peelnet_cut(float zeta, vec4 gaps) {
+    vec2 lengths = (gaps.yw - gaps.xz);
+    vec2 passed = clamp((vec2(zeta) - gaps.xz), vec2(0.0), lengths);
+    float kept = (((zeta + 1.0) - passed.x) - passed.y);
+    return ((kept * (2.0 / ((2.0 - lengths.x) - lengths.y))) - 1.0);
+}
+
+float peelnet_level(float absorbance) {
+    return max(floor(((absorbance * PEELNET_BIN_LEVELS) + 0.5)), 1.0);
+}
+
+vec4 peelnet_in_bins(float level, float place, float first) {
+    vec4 middles = vec4(first, (first + 1.0), (first + 2.0), (first + 3.0));
+    vec4 shares = max((vec4(1.0) - abs((vec4(place) - middles))), vec4(0.0));
+    return (floor(((level * shares) + vec4(0.5))) / vec4(255.0));
+}
+
+vec4 peelnet_seen_behind(float before, vec4 bins) {
+    float two = (bins.x + bins.y);
+    vec4 levels_1 = (vec4(before) + vec4(bins.x, two, (two + bins.z), ((two + bins.z) + bins.w)));
+    return exp((levels_1 * -3.984375));
+}
+
 float peelnet_noise(uvec2 pixel) {
     return (float((((pixel.x * 12664746u) + (pixel.y * 9560334u)) & 16777215u)) * 5.9604645e-8);
 }
 
 vec4 peelnet_even() {
     return vec4(0.06, 0.35, 0.65, 0.94);
-}
-
-float peelnet_cut(float zeta, vec4 gaps) {
-    vec2 lengths = (gaps.yw - gaps.xz);
-    vec2 passed = clamp((vec2(zeta) - gaps.xz), vec2(0.0), lengths);
-    float kept = (((zeta + 1.0) - passed.x) - passed.y);
-    return ((kept * (2.0 / ((2.0 - lengths.x) - lengths.y))) - 1.0);
 }
 
 float peelnet_place_among(float depth, vec4 quantiles) {
@@ -143,25 +159,20 @@ float peelnet_place_among(float depth, vec4 quantiles) {
     return (dot(parts, vec4(0.06, 0.29, 0.3, 0.29)) + (0.06 * last));
 }
 
-vec4 peelnet_in_bins(float level, float depth_1, float first) {
-    float place_2 = (clamp(((depth_1 * 16.0) - 0.5), 0.0, 15.0) - first);
-    vec4 shares = max((vec4(1.0) - abs((vec4(place_2) - vec4(0.0, 1.0, 2.0, 3.0)))), vec4(0.0));
-    return floor(((level * shares) + vec4(0.5)));
-}
-
-float peelnet_level(float absorbance) {
-    return max(floor(((absorbance * PEELNET_BIN_LEVELS) + 0.5)), 1.0);
+mat4x4 peelnet_tile_levels(float level_1, float depth_1) {
+    float place_3 = clamp(((depth_1 * 16.0) - 0.5), 0.0, 15.0);
+    vec4 _e10 = peelnet_in_bins(level_1, place_3, 0.0);
+    vec4 _e12 = peelnet_in_bins(level_1, place_3, 4.0);
+    vec4 _e14 = peelnet_in_bins(level_1, place_3, 8.0);
+    vec4 _e16 = peelnet_in_bins(level_1, place_3, 12.0);
+    return mat4x4(_e10, _e12, _e14, _e16);
 }
 
 mat4x4 peelnet_tile_bins(float alpha_1, float zeta_1) {
     float _e2 = peelnet_absorbance(alpha_1);
     float _e3 = peelnet_level(_e2);
-    float depth_3 = ((0.5 * zeta_1) + 0.5);
-    vec4 _e9 = peelnet_in_bins(_e3, depth_3, 0.0);
-    vec4 _e14 = peelnet_in_bins(_e3, depth_3, 4.0);
-    vec4 _e19 = peelnet_in_bins(_e3, depth_3, 8.0);
-    vec4 _e24 = peelnet_in_bins(_e3, depth_3, 12.0);
-    return mat4x4((_e9 / vec4(255.0)), (_e14 / vec4(255.0)), (_e19 / vec4(255.0)), (_e24 / vec4(255.0)));
+    mat4x4 _e8 = peelnet_tile_levels(_e3, ((0.5 * zeta_1) + 0.5));
+    return _e8;
 }
 
 float peelnet_tile_nearest(float alpha_2, float zeta_2) {
@@ -172,75 +183,59 @@ float peelnet_tile_nearest(float alpha_2, float zeta_2) {
     return _e26.x;
 }
 
-vec4 peelnet_seen(vec4 bins, vec4 taken, float front) {
-    float two = (bins.x + bins.y);
-    vec4 before_2 = (vec4(front) + vec4(0.0, bins.x, two, (two + bins.z)));
-    vec4 seen_2 = (exp((before_2 * -0.015625)) - exp(((before_2 + bins) * -0.015625)));
-    return ((seen_2 * max((bins - taken), vec4(0.0))) / max(bins, vec4(1.0)));
+vec4 peelnet_before(mat4x4 bins_1) {
+    vec4 all_ = (vec4(1.0) * bins_1);
+    return vec4(0.0, all_.x, (all_.x + all_.y), ((all_.x + all_.y) + all_.z));
 }
 
-mat4x4 peelnet_tile_seen(mat4x4 bins_1, float nearest) {
-    vec4 a = floor(((bins_1[0] * 255.0) + vec4(0.5)));
-    vec4 b_3 = floor(((bins_1[1] * 255.0) + vec4(0.5)));
-    vec4 c = floor(((bins_1[2] * 255.0) + vec4(0.5)));
-    vec4 d = floor(((bins_1[3] * 255.0) + vec4(0.5)));
-    vec3 _e31 = peelnet_levels(vec3(nearest));
-    float level_1 = max(_e31.x, 0.0);
-    float back = floor((level_1 * 0.00390625));
-    float opacity_1 = ((level_1 - (back * PEELNET_TILE_OPACITIES)) * 0.003921569);
-    float depth_4 = (((PEELNET_TILE_DEPTHS - back) - 0.5) / PEELNET_TILE_DEPTHS);
-    float _e52 = peelnet_level((opacity_1 / (1.0625 - opacity_1)));
-    float to_b = dot(a, vec4(1.0));
-    float to_c = (to_b + dot(b_3, vec4(1.0)));
-    float to_d = (to_c + dot(c, vec4(1.0)));
-    vec4 _e65 = peelnet_in_bins(_e52, depth_4, 0.0);
-    vec4 _e67 = peelnet_seen(a, _e65, 0.0);
-    vec4 _e69 = peelnet_in_bins(_e52, depth_4, 4.0);
-    vec4 _e70 = peelnet_seen(b_3, _e69, to_b);
-    vec4 _e72 = peelnet_in_bins(_e52, depth_4, 8.0);
-    vec4 _e73 = peelnet_seen(c, _e72, to_c);
-    vec4 _e75 = peelnet_in_bins(_e52, depth_4, 12.0);
-    vec4 _e76 = peelnet_seen(d, _e75, to_d);
-    return mat4x4(_e67, _e70, _e73, _e76);
+vec4 peelnet_seen(vec4 bins_2, vec4 taken, float before_1) {
+    vec4 _e3 = peelnet_seen_behind(before_1, bins_2);
+    vec4 seen_2 = (vec4(exp((before_1 * -3.984375)), _e3.xyz) - _e3);
+    return ((seen_2 * max((bins_2 - taken), vec4(0.0))) / max(bins_2, vec4(0.003921569)));
 }
 
-float peelnet_passed(float share, float before, vec4 bins_2) {
-    float two_1 = (bins_2.x + bins_2.y);
-    vec4 begin_1 = (vec4(before) + vec4(0.0, bins_2.x, two_1, (two_1 + bins_2.z)));
-    return dot(clamp(((vec4(share) - begin_1) / max(bins_2, vec4(1e-9))), vec4(0.0), vec4(1.0)), vec4(1.0));
+mat4x4 peelnet_tile_seen(mat4x4 bins_3, float nearest) {
+    vec3 _e3 = peelnet_levels(vec3(nearest));
+    float level_2 = max(_e3.x, 0.0);
+    float back = floor((level_2 * 0.00390625));
+    float opacity_1 = ((level_2 - (back * PEELNET_TILE_OPACITIES)) * 0.003921569);
+    float depth_3 = (((PEELNET_TILE_DEPTHS - back) - 0.5) / PEELNET_TILE_DEPTHS);
+    float _e24 = peelnet_level((opacity_1 / (1.0625 - opacity_1)));
+    mat4x4 _e25 = peelnet_tile_levels(_e24, depth_3);
+    vec4 _e26 = peelnet_before(bins_3);
+    vec4 _e30 = peelnet_seen(bins_3[0], _e25[0], _e26.x);
+    vec4 _e34 = peelnet_seen(bins_3[1], _e25[1], _e26.y);
+    vec4 _e38 = peelnet_seen(bins_3[2], _e25[2], _e26.z);
+    vec4 _e42 = peelnet_seen(bins_3[3], _e25[3], _e26.w);
+    return mat4x4(_e30, _e34, _e38, _e42);
+}
+
+float peelnet_passed(float share, float before_2, vec4 bins_4) {
+    float two_1 = (bins_4.x + bins_4.y);
+    vec4 begin_1 = (vec4(before_2) + vec4(0.0, bins_4.x, two_1, (two_1 + bins_4.z)));
+    return dot(clamp(((vec4(share) - begin_1) / max(bins_4, vec4(1e-9))), vec4(0.0), vec4(1.0)), vec4(1.0));
+}
+
+float peelnet_depth_at(float share_1, mat4x4 bins_5, vec4 before_3) {
+    float _e5 = peelnet_passed(share_1, before_3.x, bins_5[0]);
+    float _e8 = peelnet_passed(share_1, before_3.y, bins_5[1]);
+    float front = (_e5 + _e8);
+    float _e12 = peelnet_passed(share_1, before_3.z, bins_5[2]);
+    float _e16 = peelnet_passed(share_1, before_3.w, bins_5[3]);
+    return (0.0625 * ((front + _e12) + _e16));
 }
 
 vec4 peelnet_quantiles(mat4x4 seen) {
-    vec4 a_1 = (seen[0] + vec4(0.00125));
-    vec4 b_4 = (seen[1] + vec4(0.00125));
-    vec4 c_1 = (seen[2] + vec4(0.00125));
-    vec4 d_1 = (seen[3] + vec4(0.00125));
-    float to_b_1 = dot(a_1, vec4(1.0));
-    float to_c_1 = (to_b_1 + dot(b_4, vec4(1.0)));
-    float to_d_1 = (to_c_1 + dot(c_1, vec4(1.0)));
-    vec4 _e28 = peelnet_even();
-    vec4 shares_1 = (_e28 * (to_d_1 + dot(d_1, vec4(1.0))));
-    float _e36 = peelnet_passed(shares_1.x, 0.0, a_1);
-    float _e38 = peelnet_passed(shares_1.x, to_b_1, b_4);
-    float _e41 = peelnet_passed(shares_1.x, to_c_1, c_1);
-    float _e44 = peelnet_passed(shares_1.x, to_d_1, d_1);
-    float first_1 = (((_e36 + _e38) + _e41) + _e44);
-    float _e48 = peelnet_passed(shares_1.y, 0.0, a_1);
-    float _e50 = peelnet_passed(shares_1.y, to_b_1, b_4);
-    float _e53 = peelnet_passed(shares_1.y, to_c_1, c_1);
-    float _e56 = peelnet_passed(shares_1.y, to_d_1, d_1);
-    float second = (((_e48 + _e50) + _e53) + _e56);
-    float _e60 = peelnet_passed(shares_1.z, 0.0, a_1);
-    float _e62 = peelnet_passed(shares_1.z, to_b_1, b_4);
-    float _e65 = peelnet_passed(shares_1.z, to_c_1, c_1);
-    float _e68 = peelnet_passed(shares_1.z, to_d_1, d_1);
-    float third = (((_e60 + _e62) + _e65) + _e68);
-    float _e72 = peelnet_passed(shares_1.w, 0.0, a_1);
-    float _e74 = peelnet_passed(shares_1.w, to_b_1, b_4);
-    float _e77 = peelnet_passed(shares_1.w, to_c_1, c_1);
-    float _e80 = peelnet_passed(shares_1.w, to_d_1, d_1);
-    float fourth = (((_e72 + _e74) + _e77) + _e80);
-    return (vec4(first_1, second, third, fourth) * 0.0625);
+    vec4 even = vec4(0.00125);
+    mat4x4 bins_6 = (seen + mat4x4(even, even, even, even));
+    vec4 _e5 = peelnet_before(bins_6);
+    vec4 _e6 = peelnet_even();
+    vec4 shares_1 = (_e6 * (_e5.w + dot(bins_6[3], vec4(1.0))));
+    float _e15 = peelnet_depth_at(shares_1.x, bins_6, _e5);
+    float _e17 = peelnet_depth_at(shares_1.y, bins_6, _e5);
+    float _e19 = peelnet_depth_at(shares_1.z, bins_6, _e5);
+    float _e21 = peelnet_depth_at(shares_1.w, bins_6, _e5);
+    return vec4(_e15, _e17, _e19, _e21);
 }
 
 vec4 peelnet_to_unit(vec4 values) {
@@ -253,22 +248,22 @@ vec4 peelnet_from_unit(vec4 units) {
     return (shares_2 / (vec4(1.0) - shares_2));
 }
 
-vec4 peelnet_record(float b, vec3 rgb, float depth_2, float place, float noise) {
-    float bin_1 = clamp(floor(((0.5 * (depth_2 + place)) * PEELNET_DEPTHS)), 0.0, 479.0);
+vec4 peelnet_record(float b, vec3 rgb, float depth_2, float place_1, float noise) {
+    float bin_1 = clamp(floor(((0.5 * (depth_2 + place_1)) * PEELNET_DEPTHS)), 0.0, 479.0);
     vec4 _e16 = peelnet_to_unit(vec4(rgb, b));
     vec4 values_1 = min(floor(((_e16 * 127.0) + vec4(noise))), vec4(127.0));
-    vec4 levels_1 = (values_1 + vec4(((479.0 - bin_1) * PEELNET_VALUES)));
-    vec3 _e30 = peelnet_halves(levels_1.xyz);
-    vec3 _e32 = peelnet_halves(levels_1.www);
+    vec4 levels_2 = (values_1 + vec4(((479.0 - bin_1) * PEELNET_VALUES)));
+    vec3 _e30 = peelnet_halves(levels_2.xyz);
+    vec3 _e32 = peelnet_halves(levels_2.www);
     return vec4(_e30, _e32.x);
 }
 
 PeelnetNearest peelnet_nearest(vec4 halves_1, vec4 sums, vec4 quantiles_1, float noise_1) {
     vec3 _e5 = peelnet_levels(halves_1.xyz);
     vec3 _e7 = peelnet_levels(halves_1.www);
-    vec4 levels_2 = max(vec4(_e5, _e7.x), vec4(0.0));
-    vec4 back_1 = floor((levels_2 * 0.0078125));
-    vec4 steps = ((levels_2 - (back_1 * PEELNET_VALUES)) + vec4((0.5 - noise_1)));
+    vec4 levels_3 = max(vec4(_e5, _e7.x), vec4(0.0));
+    vec4 back_1 = floor((levels_3 * 0.0078125));
+    vec4 steps = ((levels_3 - (back_1 * PEELNET_VALUES)) + vec4((0.5 - noise_1)));
     vec4 units_1 = clamp((steps / vec4(127.0)), vec4(0.0), vec4(1.0));
     vec4 _e31 = peelnet_from_unit(units_1);
     float on_scale = (((PEELNET_DEPTHS - back_1.w) - 0.5) / PEELNET_DEPTHS);
@@ -285,8 +280,8 @@ PeelnetNearest peelnet_nearest(vec4 halves_1, vec4 sums, vec4 quantiles_1, float
     return PeelnetNearest(color, absorbance_1, _e43, coverage, alpha_4, (coverage - alpha_4));
 }
 
-vec4 peelnet_behind(vec3 rgb_1, float b_1, float share_1, PeelnetNearest nearest_1) {
-    float taken_1 = (nearest_1.absorbance * share_1);
+vec4 peelnet_behind(vec3 rgb_1, float b_1, float share_2, PeelnetNearest nearest_1) {
+    float taken_1 = (nearest_1.absorbance * share_2);
     return vec4(max((min(rgb_1, vec3(65504.0)) - (taken_1 * nearest_1.color)), vec3(0.0)), max((b_1 - taken_1), 0.0));
 }
 
@@ -311,11 +306,11 @@ float peelnet_network(PeelnetAhead ahead) {
     return _e14;
 }
 
-float peelnet_part(float own, float before_1, float previous, float next, float total, float number_1, PeelnetNearest nearest_2) {
+float peelnet_part(float own, float before_4, float previous, float next, float total, float number_1, PeelnetNearest nearest_2) {
     float _e7 = peelnet_inside(own);
-    float ahead_1 = (before_1 + _e7);
+    float ahead_1 = (before_4 + _e7);
     float scale = (1.0 / max(total, 1e-6));
-    PeelnetAhead known = PeelnetAhead(ahead_1, total, (before_1 * scale), (own * scale), (previous * scale), (next * scale), nearest_2.alpha, nearest_2.place, number_1);
+    PeelnetAhead known = PeelnetAhead(ahead_1, total, (before_4 * scale), (own * scale), (previous * scale), (next * scale), nearest_2.alpha, nearest_2.place, number_1);
     float _e22 = peelnet_network(known);
     return exp(((-2.0 * ahead_1) * _e22));
 }
@@ -325,30 +320,30 @@ vec4 peelnet_over_black(PeelnetNearest nearest_3, vec4 seen_1) {
     return vec4(((nearest_3.alpha * nearest_3.color) + (nearest_3.left * rest)), nearest_3.coverage);
 }
 
-vec3 peelnet_shares(float place_1) {
-    vec3 off = ((vec3(place_1) - vec3(0.224, 0.485, 1.028)) * vec3(6.3291135, 5.952381, 5.235602));
+vec3 peelnet_shares(float place_2) {
+    vec3 off = ((vec3(place_2) - vec3(0.224, 0.485, 1.028)) * vec3(6.3291135, 5.952381, 5.235602));
     vec3 bumps = exp(((-0.5 * off) * off));
     return (bumps * (1.0 / ((bumps.x + bumps.y) + bumps.z)));
 }
 
 PeelnetStatistics peelnet_statistics(float alpha_3, vec3 rgb_2, float zeta_3, vec4 quantiles_2, float noise_2) {
     float _e5 = peelnet_absorbance(alpha_3);
-    float depth_5 = ((0.5 * zeta_3) + 0.5);
-    float _e10 = peelnet_place_among(depth_5, quantiles_2);
-    vec4 _e11 = peelnet_record(_e5, rgb_2, depth_5, _e10, noise_2);
+    float depth_4 = ((0.5 * zeta_3) + 0.5);
+    float _e10 = peelnet_place_among(depth_4, quantiles_2);
+    vec4 _e11 = peelnet_record(_e5, rgb_2, depth_4, _e10, noise_2);
     vec3 _e12 = peelnet_shares(_e10);
     vec3 shares_3 = (_e5 * _e12);
     return PeelnetStatistics(vec4((rgb_2 * shares_3.x), _e11.x), vec4((rgb_2 * shares_3.y), _e11.y), vec4((rgb_2 * shares_3.z), _e11.z), vec4(shares_3, _e11.w));
 }
 
 vec4 peelnet_pixel(vec4 sum_a, vec4 sum_b, vec4 sum_c, vec4 absorbances, vec4 quantiles_3, float noise_3) {
-    vec3 b_5 = min(absorbances.xyz, vec3(65504.0));
-    vec4 all_ = vec4(((sum_a.xyz + sum_b.xyz) + sum_c.xyz), ((b_5.x + b_5.y) + b_5.z));
-    PeelnetNearest _e26 = peelnet_nearest(vec4(sum_a.w, sum_b.w, sum_c.w, absorbances.w), all_, quantiles_3, noise_3);
+    vec3 b_3 = min(absorbances.xyz, vec3(65504.0));
+    vec4 all_1 = vec4(((sum_a.xyz + sum_b.xyz) + sum_c.xyz), ((b_3.x + b_3.y) + b_3.z));
+    PeelnetNearest _e26 = peelnet_nearest(vec4(sum_a.w, sum_b.w, sum_c.w, absorbances.w), all_1, quantiles_3, noise_3);
     vec3 _e28 = peelnet_shares(_e26.place);
-    vec4 _e32 = peelnet_behind(sum_a.xyz, b_5.x, _e28.x, _e26);
-    vec4 _e36 = peelnet_behind(sum_b.xyz, b_5.y, _e28.y, _e26);
-    vec4 _e40 = peelnet_behind(sum_c.xyz, b_5.z, _e28.z, _e26);
+    vec4 _e32 = peelnet_behind(sum_a.xyz, b_3.x, _e28.x, _e26);
+    vec4 _e36 = peelnet_behind(sum_b.xyz, b_3.y, _e28.y, _e26);
+    vec4 _e40 = peelnet_behind(sum_c.xyz, b_3.z, _e28.z, _e26);
     float two_2 = (_e32.w + _e36.w);
     float total_1 = (two_2 + _e40.w);
     float _e51 = peelnet_part(_e32.w, 0.0, 0.0, _e36.w, total_1, 0.0, _e26);

@@ -85,11 +85,11 @@ struct PeelnetStatistics {
     metal::float4 sum_c;
     metal::float4 absorbances;
 };
+constant float PEELNET_BIN_LEVELS = 64.0;
 constant float PEELNET_TILE_DEPTHS = 240.0;
 constant float PEELNET_TILE_OPACITIES = 256.0;
 constant float PEELNET_DEPTHS = 480.0;
 constant float PEELNET_VALUES = 128.0;
-constant float PEELNET_BIN_LEVELS = 64.0;
 constant float PEELNET_MOST = 0.9411765;
 
 PeelnetRange peelnet_range(
@@ -146,6 +146,41 @@ metal::float3 peelnet_levels(
     return metal::float3(30719.5) + (metal::sign(halves) * from_middle_1);
 }
 
+float peelnet_cut(
+    float zeta,
+    metal::float4 gaps
+) {
+    metal::float2 lengths = gaps.yw - gaps.xz;
+    metal::float2 passed = metal::clamp(metal::float2(zeta) - gaps.xz, metal::float2(0.0), lengths);
+    float kept = ((zeta + 1.0) - passed.x) - passed.y;
+    return (kept * (2.0 / ((2.0 - lengths.x) - lengths.y))) - 1.0;
+}
+
+float peelnet_level(
+    float absorbance
+) {
+    return metal::max(metal::floor((absorbance * PEELNET_BIN_LEVELS) + 0.5), 1.0);
+}
+
+metal::float4 peelnet_in_bins(
+    float level,
+    float place,
+    float first
+) {
+    metal::float4 middles = metal::float4(first, first + 1.0, first + 2.0, first + 3.0);
+    metal::float4 shares = metal::max(metal::float4(1.0) - metal::abs(metal::float4(place) - middles), metal::float4(0.0));
+    return metal::floor((level * shares) + metal::float4(0.5)) / metal::float4(255.0);
+}
+
+metal::float4 peelnet_seen_behind(
+    float before,
+    metal::float4 bins
+) {
+    float two = bins.x + bins.y;
+    metal::float4 levels_1 = metal::float4(before) + metal::float4(bins.x, two, two + bins.z, (two + bins.z) + bins.w);
+    return metal::exp(levels_1 * -3.984375);
+}
+
 float peelnet_noise(
     metal::uint2 pixel
 ) {
@@ -155,16 +190,6 @@ float peelnet_noise(
 metal::float4 peelnet_even(
 ) {
     return metal::float4(0.06, 0.35, 0.65, 0.94);
-}
-
-float peelnet_cut(
-    float zeta,
-    metal::float4 gaps
-) {
-    metal::float2 lengths = gaps.yw - gaps.xz;
-    metal::float2 passed = metal::clamp(metal::float2(zeta) - gaps.xz, metal::float2(0.0), lengths);
-    float kept = ((zeta + 1.0) - passed.x) - passed.y;
-    return (kept * (2.0 / ((2.0 - lengths.x) - lengths.y))) - 1.0;
 }
 
 float peelnet_place_among(
@@ -177,20 +202,16 @@ float peelnet_place_among(
     return metal::dot(parts, metal::float4(0.06, 0.29, 0.3, 0.29)) + (0.06 * last);
 }
 
-metal::float4 peelnet_in_bins(
-    float level,
-    float depth_1,
-    float first
+metal::float4x4 peelnet_tile_levels(
+    float level_1,
+    float depth_1
 ) {
-    float place_2 = metal::clamp((depth_1 * 16.0) - 0.5, 0.0, 15.0) - first;
-    metal::float4 shares = metal::max(metal::float4(1.0) - metal::abs(metal::float4(place_2) - metal::float4(0.0, 1.0, 2.0, 3.0)), metal::float4(0.0));
-    return metal::floor((level * shares) + metal::float4(0.5));
-}
-
-float peelnet_level(
-    float absorbance
-) {
-    return metal::max(metal::floor((absorbance * PEELNET_BIN_LEVELS) + 0.5), 1.0);
+    float place_3 = metal::clamp((depth_1 * 16.0) - 0.5, 0.0, 15.0);
+    metal::float4 _e10 = peelnet_in_bins(level_1, place_3, 0.0);
+    metal::float4 _e12 = peelnet_in_bins(level_1, place_3, 4.0);
+    metal::float4 _e14 = peelnet_in_bins(level_1, place_3, 8.0);
+    metal::float4 _e16 = peelnet_in_bins(level_1, place_3, 12.0);
+    return metal::float4x4(_e10, _e12, _e14, _e16);
 }
 
 metal::float4x4 peelnet_tile_bins(
@@ -199,12 +220,8 @@ metal::float4x4 peelnet_tile_bins(
 ) {
     float _e2 = peelnet_absorbance(alpha_1);
     float _e3 = peelnet_level(_e2);
-    float depth_3 = (0.5 * zeta_1) + 0.5;
-    metal::float4 _e9 = peelnet_in_bins(_e3, depth_3, 0.0);
-    metal::float4 _e14 = peelnet_in_bins(_e3, depth_3, 4.0);
-    metal::float4 _e19 = peelnet_in_bins(_e3, depth_3, 8.0);
-    metal::float4 _e24 = peelnet_in_bins(_e3, depth_3, 12.0);
-    return metal::float4x4(_e9 / metal::float4(255.0), _e14 / metal::float4(255.0), _e19 / metal::float4(255.0), _e24 / metal::float4(255.0));
+    metal::float4x4 _e8 = peelnet_tile_levels(_e3, (0.5 * zeta_1) + 0.5);
+    return _e8;
 }
 
 float peelnet_tile_nearest(
@@ -218,88 +235,78 @@ float peelnet_tile_nearest(
     return _e26.x;
 }
 
-metal::float4 peelnet_seen(
-    metal::float4 bins,
-    metal::float4 taken,
-    float front
+metal::float4 peelnet_before(
+    metal::float4x4 bins_1
 ) {
-    float two = bins.x + bins.y;
-    metal::float4 before_2 = metal::float4(front) + metal::float4(0.0, bins.x, two, two + bins.z);
-    metal::float4 seen_2 = metal::exp(before_2 * -0.015625) - metal::exp((before_2 + bins) * -0.015625);
-    return (seen_2 * metal::max(bins - taken, metal::float4(0.0))) / metal::max(bins, metal::float4(1.0));
+    metal::float4 all = metal::float4(1.0) * bins_1;
+    return metal::float4(0.0, all.x, all.x + all.y, (all.x + all.y) + all.z);
+}
+
+metal::float4 peelnet_seen(
+    metal::float4 bins_2,
+    metal::float4 taken,
+    float before_1
+) {
+    metal::float4 _e3 = peelnet_seen_behind(before_1, bins_2);
+    metal::float4 seen_2 = metal::float4(metal::exp(before_1 * -3.984375), _e3.xyz) - _e3;
+    return (seen_2 * metal::max(bins_2 - taken, metal::float4(0.0))) / metal::max(bins_2, metal::float4(0.003921569));
 }
 
 metal::float4x4 peelnet_tile_seen(
-    metal::float4x4 bins_1,
+    metal::float4x4 bins_3,
     float nearest
 ) {
-    metal::float4 a = metal::floor((bins_1[0] * 255.0) + metal::float4(0.5));
-    metal::float4 b_3 = metal::floor((bins_1[1] * 255.0) + metal::float4(0.5));
-    metal::float4 c = metal::floor((bins_1[2] * 255.0) + metal::float4(0.5));
-    metal::float4 d = metal::floor((bins_1[3] * 255.0) + metal::float4(0.5));
-    metal::float3 _e31 = peelnet_levels(metal::float3(nearest));
-    float level_1 = metal::max(_e31.x, 0.0);
-    float back = metal::floor(level_1 * 0.00390625);
-    float opacity_1 = (level_1 - (back * PEELNET_TILE_OPACITIES)) * 0.003921569;
-    float depth_4 = ((PEELNET_TILE_DEPTHS - back) - 0.5) / PEELNET_TILE_DEPTHS;
-    float _e52 = peelnet_level(opacity_1 / (1.0625 - opacity_1));
-    float to_b = metal::dot(a, metal::float4(1.0));
-    float to_c = to_b + metal::dot(b_3, metal::float4(1.0));
-    float to_d = to_c + metal::dot(c, metal::float4(1.0));
-    metal::float4 _e65 = peelnet_in_bins(_e52, depth_4, 0.0);
-    metal::float4 _e67 = peelnet_seen(a, _e65, 0.0);
-    metal::float4 _e69 = peelnet_in_bins(_e52, depth_4, 4.0);
-    metal::float4 _e70 = peelnet_seen(b_3, _e69, to_b);
-    metal::float4 _e72 = peelnet_in_bins(_e52, depth_4, 8.0);
-    metal::float4 _e73 = peelnet_seen(c, _e72, to_c);
-    metal::float4 _e75 = peelnet_in_bins(_e52, depth_4, 12.0);
-    metal::float4 _e76 = peelnet_seen(d, _e75, to_d);
-    return metal::float4x4(_e67, _e70, _e73, _e76);
+    metal::float3 _e3 = peelnet_levels(metal::float3(nearest));
+    float level_2 = metal::max(_e3.x, 0.0);
+    float back = metal::floor(level_2 * 0.00390625);
+    float opacity_1 = (level_2 - (back * PEELNET_TILE_OPACITIES)) * 0.003921569;
+    float depth_3 = ((PEELNET_TILE_DEPTHS - back) - 0.5) / PEELNET_TILE_DEPTHS;
+    float _e24 = peelnet_level(opacity_1 / (1.0625 - opacity_1));
+    metal::float4x4 _e25 = peelnet_tile_levels(_e24, depth_3);
+    metal::float4 _e26 = peelnet_before(bins_3);
+    metal::float4 _e30 = peelnet_seen(bins_3[0], _e25[0], _e26.x);
+    metal::float4 _e34 = peelnet_seen(bins_3[1], _e25[1], _e26.y);
+    metal::float4 _e38 = peelnet_seen(bins_3[2], _e25[2], _e26.z);
+    metal::float4 _e42 = peelnet_seen(bins_3[3], _e25[3], _e26.w);
+    return metal::float4x4(_e30, _e34, _e38, _e42);
 }
 
 float peelnet_passed(
     float share,
-    float before,
-    metal::float4 bins_2
+    float before_2,
+    metal::float4 bins_4
 ) {
-    float two_1 = bins_2.x + bins_2.y;
-    metal::float4 begin_1 = metal::float4(before) + metal::float4(0.0, bins_2.x, two_1, two_1 + bins_2.z);
-    return metal::dot(metal::clamp((metal::float4(share) - begin_1) / metal::max(bins_2, metal::float4(0.000000001)), metal::float4(0.0), metal::float4(1.0)), metal::float4(1.0));
+    float two_1 = bins_4.x + bins_4.y;
+    metal::float4 begin_1 = metal::float4(before_2) + metal::float4(0.0, bins_4.x, two_1, two_1 + bins_4.z);
+    return metal::dot(metal::clamp((metal::float4(share) - begin_1) / metal::max(bins_4, metal::float4(0.000000001)), metal::float4(0.0), metal::float4(1.0)), metal::float4(1.0));
+}
+
+float peelnet_depth_at(
+    float share_1,
+    metal::float4x4 bins_5,
+    metal::float4 before_3
+) {
+    float _e5 = peelnet_passed(share_1, before_3.x, bins_5[0]);
+    float _e8 = peelnet_passed(share_1, before_3.y, bins_5[1]);
+    float front = _e5 + _e8;
+    float _e12 = peelnet_passed(share_1, before_3.z, bins_5[2]);
+    float _e16 = peelnet_passed(share_1, before_3.w, bins_5[3]);
+    return 0.0625 * ((front + _e12) + _e16);
 }
 
 metal::float4 peelnet_quantiles(
     metal::float4x4 seen
 ) {
-    metal::float4 a_1 = seen[0] + metal::float4(0.00125);
-    metal::float4 b_4 = seen[1] + metal::float4(0.00125);
-    metal::float4 c_1 = seen[2] + metal::float4(0.00125);
-    metal::float4 d_1 = seen[3] + metal::float4(0.00125);
-    float to_b_1 = metal::dot(a_1, metal::float4(1.0));
-    float to_c_1 = to_b_1 + metal::dot(b_4, metal::float4(1.0));
-    float to_d_1 = to_c_1 + metal::dot(c_1, metal::float4(1.0));
-    metal::float4 _e28 = peelnet_even();
-    metal::float4 shares_1 = _e28 * (to_d_1 + metal::dot(d_1, metal::float4(1.0)));
-    float _e36 = peelnet_passed(shares_1.x, 0.0, a_1);
-    float _e38 = peelnet_passed(shares_1.x, to_b_1, b_4);
-    float _e41 = peelnet_passed(shares_1.x, to_c_1, c_1);
-    float _e44 = peelnet_passed(shares_1.x, to_d_1, d_1);
-    float first_1 = ((_e36 + _e38) + _e41) + _e44;
-    float _e48 = peelnet_passed(shares_1.y, 0.0, a_1);
-    float _e50 = peelnet_passed(shares_1.y, to_b_1, b_4);
-    float _e53 = peelnet_passed(shares_1.y, to_c_1, c_1);
-    float _e56 = peelnet_passed(shares_1.y, to_d_1, d_1);
-    float second = ((_e48 + _e50) + _e53) + _e56;
-    float _e60 = peelnet_passed(shares_1.z, 0.0, a_1);
-    float _e62 = peelnet_passed(shares_1.z, to_b_1, b_4);
-    float _e65 = peelnet_passed(shares_1.z, to_c_1, c_1);
-    float _e68 = peelnet_passed(shares_1.z, to_d_1, d_1);
-    float third = ((_e60 + _e62) + _e65) + _e68;
-    float _e72 = peelnet_passed(shares_1.w, 0.0, a_1);
-    float _e74 = peelnet_passed(shares_1.w, to_b_1, b_4);
-    float _e77 = peelnet_passed(shares_1.w, to_c_1, c_1);
-    float _e80 = peelnet_passed(shares_1.w, to_d_1, d_1);
-    float fourth = ((_e72 + _e74) + _e77) + _e80;
-    return metal::float4(first_1, second, third, fourth) * 0.0625;
+    metal::float4 even = metal::float4(0.00125);
+    metal::float4x4 bins_6 = seen + metal::float4x4(even, even, even, even);
+    metal::float4 _e5 = peelnet_before(bins_6);
+    metal::float4 _e6 = peelnet_even();
+    metal::float4 shares_1 = _e6 * (_e5.w + metal::dot(bins_6[3], metal::float4(1.0)));
+    float _e15 = peelnet_depth_at(shares_1.x, bins_6, _e5);
+    float _e17 = peelnet_depth_at(shares_1.y, bins_6, _e5);
+    float _e19 = peelnet_depth_at(shares_1.z, bins_6, _e5);
+    float _e21 = peelnet_depth_at(shares_1.w, bins_6, _e5);
+    return metal::float4(_e15, _e17, _e19, _e21);
 }
 
 metal::float4 peelnet_to_unit(
@@ -320,15 +327,15 @@ metal::float4 peelnet_record(
     float b,
     metal::float3 rgb,
     float depth_2,
-    float place,
+    float place_1,
     float noise
 ) {
-    float bin_1 = metal::clamp(metal::floor((0.5 * (depth_2 + place)) * PEELNET_DEPTHS), 0.0, 479.0);
+    float bin_1 = metal::clamp(metal::floor((0.5 * (depth_2 + place_1)) * PEELNET_DEPTHS), 0.0, 479.0);
     metal::float4 _e16 = peelnet_to_unit(metal::float4(rgb, b));
     metal::float4 values_1 = metal::min(metal::floor((_e16 * 127.0) + metal::float4(noise)), metal::float4(127.0));
-    metal::float4 levels_1 = values_1 + metal::float4((479.0 - bin_1) * PEELNET_VALUES);
-    metal::float3 _e30 = peelnet_halves(levels_1.xyz);
-    metal::float3 _e32 = peelnet_halves(levels_1.www);
+    metal::float4 levels_2 = values_1 + metal::float4((479.0 - bin_1) * PEELNET_VALUES);
+    metal::float3 _e30 = peelnet_halves(levels_2.xyz);
+    metal::float3 _e32 = peelnet_halves(levels_2.www);
     return metal::float4(_e30, _e32.x);
 }
 
@@ -340,9 +347,9 @@ PeelnetNearest peelnet_nearest(
 ) {
     metal::float3 _e5 = peelnet_levels(halves_1.xyz);
     metal::float3 _e7 = peelnet_levels(halves_1.www);
-    metal::float4 levels_2 = metal::max(metal::float4(_e5, _e7.x), metal::float4(0.0));
-    metal::float4 back_1 = metal::floor(levels_2 * 0.0078125);
-    metal::float4 steps = (levels_2 - (back_1 * PEELNET_VALUES)) + metal::float4(0.5 - noise_1);
+    metal::float4 levels_3 = metal::max(metal::float4(_e5, _e7.x), metal::float4(0.0));
+    metal::float4 back_1 = metal::floor(levels_3 * 0.0078125);
+    metal::float4 steps = (levels_3 - (back_1 * PEELNET_VALUES)) + metal::float4(0.5 - noise_1);
     metal::float4 units_1 = metal::clamp(steps / metal::float4(127.0), metal::float4(0.0), metal::float4(1.0));
     metal::float4 _e31 = peelnet_from_unit(units_1);
     float on_scale = ((PEELNET_DEPTHS - back_1.w) - 0.5) / PEELNET_DEPTHS;
@@ -362,10 +369,10 @@ PeelnetNearest peelnet_nearest(
 metal::float4 peelnet_behind(
     metal::float3 rgb_1,
     float b_1,
-    float share_1,
+    float share_2,
     PeelnetNearest nearest_1
 ) {
-    float taken_1 = nearest_1.absorbance * share_1;
+    float taken_1 = nearest_1.absorbance * share_2;
     return metal::float4(metal::max(metal::min(rgb_1, metal::float3(65504.0)) - (taken_1 * nearest_1.color), metal::float3(0.0)), metal::max(b_1 - taken_1, 0.0));
 }
 
@@ -406,7 +413,7 @@ float peelnet_network(
 
 float peelnet_part(
     float own,
-    float before_1,
+    float before_4,
     float previous,
     float next,
     float total,
@@ -414,9 +421,9 @@ float peelnet_part(
     PeelnetNearest nearest_2
 ) {
     float _e7 = peelnet_inside(own);
-    float ahead_1 = before_1 + _e7;
+    float ahead_1 = before_4 + _e7;
     float scale = 1.0 / metal::max(total, 0.000001);
-    PeelnetAhead known = PeelnetAhead {ahead_1, total, before_1 * scale, own * scale, previous * scale, next * scale, nearest_2.alpha, nearest_2.place, number_1};
+    PeelnetAhead known = PeelnetAhead {ahead_1, total, before_4 * scale, own * scale, previous * scale, next * scale, nearest_2.alpha, nearest_2.place, number_1};
     float _e22 = peelnet_network(known);
     return metal::exp((-2.0 * ahead_1) * _e22);
 }
@@ -430,9 +437,9 @@ metal::float4 peelnet_over_black(
 }
 
 metal::float3 peelnet_shares(
-    float place_1
+    float place_2
 ) {
-    metal::float3 off = (metal::float3(place_1) - metal::float3(0.224, 0.485, 1.028)) * metal::float3(6.3291135, 5.952381, 5.235602);
+    metal::float3 off = (metal::float3(place_2) - metal::float3(0.224, 0.485, 1.028)) * metal::float3(6.3291135, 5.952381, 5.235602);
     metal::float3 bumps = metal::exp((-0.5 * off) * off);
     return bumps * (1.0 / ((bumps.x + bumps.y) + bumps.z));
 }
@@ -445,9 +452,9 @@ PeelnetStatistics peelnet_statistics(
     float noise_2
 ) {
     float _e5 = peelnet_absorbance(alpha_3);
-    float depth_5 = (0.5 * zeta_3) + 0.5;
-    float _e10 = peelnet_place_among(depth_5, quantiles_2);
-    metal::float4 _e11 = peelnet_record(_e5, rgb_2, depth_5, _e10, noise_2);
+    float depth_4 = (0.5 * zeta_3) + 0.5;
+    float _e10 = peelnet_place_among(depth_4, quantiles_2);
+    metal::float4 _e11 = peelnet_record(_e5, rgb_2, depth_4, _e10, noise_2);
     metal::float3 _e12 = peelnet_shares(_e10);
     metal::float3 shares_3 = _e5 * _e12;
     return PeelnetStatistics {metal::float4(rgb_2 * shares_3.x, _e11.x), metal::float4(rgb_2 * shares_3.y, _e11.y), metal::float4(rgb_2 * shares_3.z, _e11.z), metal::float4(shares_3, _e11.w)};
@@ -461,13 +468,13 @@ metal::float4 peelnet_pixel(
     metal::float4 quantiles_3,
     float noise_3
 ) {
-    metal::float3 b_5 = metal::min(absorbances.xyz, metal::float3(65504.0));
-    metal::float4 all = metal::float4((sum_a.xyz + sum_b.xyz) + sum_c.xyz, (b_5.x + b_5.y) + b_5.z);
-    PeelnetNearest _e26 = peelnet_nearest(metal::float4(sum_a.w, sum_b.w, sum_c.w, absorbances.w), all, quantiles_3, noise_3);
+    metal::float3 b_3 = metal::min(absorbances.xyz, metal::float3(65504.0));
+    metal::float4 all_1 = metal::float4((sum_a.xyz + sum_b.xyz) + sum_c.xyz, (b_3.x + b_3.y) + b_3.z);
+    PeelnetNearest _e26 = peelnet_nearest(metal::float4(sum_a.w, sum_b.w, sum_c.w, absorbances.w), all_1, quantiles_3, noise_3);
     metal::float3 _e28 = peelnet_shares(_e26.place);
-    metal::float4 _e32 = peelnet_behind(sum_a.xyz, b_5.x, _e28.x, _e26);
-    metal::float4 _e36 = peelnet_behind(sum_b.xyz, b_5.y, _e28.y, _e26);
-    metal::float4 _e40 = peelnet_behind(sum_c.xyz, b_5.z, _e28.z, _e26);
+    metal::float4 _e32 = peelnet_behind(sum_a.xyz, b_3.x, _e28.x, _e26);
+    metal::float4 _e36 = peelnet_behind(sum_b.xyz, b_3.y, _e28.y, _e26);
+    metal::float4 _e40 = peelnet_behind(sum_c.xyz, b_3.z, _e28.z, _e26);
     float two_2 = _e32.w + _e36.w;
     float total_1 = two_2 + _e40.w;
     float _e51 = peelnet_part(_e32.w, 0.0, 0.0, _e36.w, total_1, 0.0, _e26);

@@ -98,14 +98,45 @@ fn peelnet_levels(halves: vec3f) -> vec3f {
     return 30719.5 + sign(halves) * from_middle;
 }
 
+// Levels of 8 bits that an absorbance of 1 is.
+const PEELNET_BIN_LEVELS: f32 = 64.0;
+
+// A depth on a scale without two gaps in which no transparent surface lies, -1 .. 1 again. gaps: the ends of the nearer and of the farther one, as
+// zeta; four times 1 where there is none. The same in all passes of a frame.
+fn peelnet_cut(zeta: f32, gaps: vec4f) -> f32 {
+    let lengths = gaps.yw - gaps.xz;
+    let passed = clamp(vec2f(zeta) - gaps.xz, vec2f(0.0), lengths);
+    let kept = zeta + 1.0 - passed.x - passed.y;
+    return kept * (2.0 / (2.0 - lengths.x - lengths.y)) - 1.0;
+}
+
+// An absorbance as a level of 8 bits. At least one: a bin with any fragment is not empty.
+fn peelnet_level(absorbance: f32) -> f32 {
+    return max(floor(absorbance * PEELNET_BIN_LEVELS + 0.5), 1.0);
+}
+
+// What a level adds to four bins from a first one, 0 .. 1. It is shared between the two bins whose middles it lies between, so that little
+// changes as it moves from one to the other, and in whole levels, so that no order of adding changes a sum. place: 0 in the middle of bin 0,
+// 1 in that of the next.
+fn peelnet_in_bins(level: f32, place: f32, first: f32) -> vec4f {
+    let middles = vec4f(first, first + 1.0, first + 2.0, first + 3.0);
+    let shares = max(vec4f(1.0) - abs(vec4f(place) - middles), vec4f(0.0));
+    return floor(level * shares + 0.5) / 255.0;
+}
+
+// What is let through by each of four bins and by what is before it.
+fn peelnet_seen_behind(before: f32, bins: vec4f) -> vec4f {
+    let two = bins.x + bins.y;
+    let levels = vec4f(before) + vec4f(bins.x, two, two + bins.z, two + bins.z + bins.w);
+    return exp(levels * (-255.0 / PEELNET_BIN_LEVELS));
+}
+
 // Bins of depth, and levels of opacity in each, of the nearest fragment of a tile's pixel.
 const PEELNET_TILE_DEPTHS: f32 = 240.0;
 const PEELNET_TILE_OPACITIES: f32 = 256.0;
 // Levels of depth, and of a value in each, that a pixel's nearest fragment is kept with.
 const PEELNET_DEPTHS: f32 = 480.0;
 const PEELNET_VALUES: f32 = 128.0;
-// Levels of 8 bits that an absorbance of 1 is.
-const PEELNET_BIN_LEVELS: f32 = 64.0;
 // b / (1 + b) of the most absorbance.
 const PEELNET_MOST: f32 = 0.941176471;
 
@@ -146,15 +177,6 @@ fn peelnet_even() -> vec4f {
     return vec4f(0.06, 0.35, 0.65, 0.94);
 }
 
-// A depth on a scale without two gaps in which no transparent surface lies, -1 .. 1 again. gaps: the ends of the nearer and of the farther one, as
-// zeta; four times 1 where there is none. The same in all passes of a frame.
-fn peelnet_cut(zeta: f32, gaps: vec4f) -> f32 {
-    let lengths = gaps.yw - gaps.xz;
-    let passed = clamp(vec2f(zeta) - gaps.xz, vec2f(0.0), lengths);
-    let kept = zeta + 1.0 - passed.x - passed.y;
-    return kept * (2.0 / (2.0 - lengths.x - lengths.y)) - 1.0;
-}
-
 // Where a depth, 0 .. 1 of the frame's, lies among quantiles, 0 .. 1.
 fn peelnet_place_among(depth: f32, quantiles: vec4f) -> f32 {
     let begin = vec4f(0.0, quantiles.xyz);
@@ -163,28 +185,20 @@ fn peelnet_place_among(depth: f32, quantiles: vec4f) -> f32 {
     return dot(parts, vec4f(0.06, 0.29, 0.3, 0.29)) + 0.06 * last;
 }
 
-// An absorbance's level, shared between four bins from a first one, in whole levels.
-fn peelnet_in_bins(level: f32, depth: f32, first: f32) -> vec4f {
-    let place = clamp(depth * 16.0 - 0.5, 0.0, 15.0) - first;
-    let shares = max(vec4f(1.0) - abs(vec4f(place) - vec4f(0.0, 1.0, 2.0, 3.0)), vec4f(0.0));
-    return floor(level * shares + 0.5);
-}
-
-fn peelnet_level(absorbance: f32) -> f32 {
-    // At least one: a bin with any fragment is not empty.
-    return max(floor(absorbance * PEELNET_BIN_LEVELS + 0.5), 1.0);
-}
-
-// What a fragment adds to the bins of its tile, of 8 bits: four in a column, nearest first.
-fn peelnet_tile_bins(alpha: f32, zeta: f32) -> mat4x4f {
-    let level = peelnet_level(peelnet_absorbance(alpha));
-    let depth = 0.5 * zeta + 0.5;
+// What a level adds to sixteen bins of depth: four in a column, nearest first.
+fn peelnet_tile_levels(level: f32, depth: f32) -> mat4x4f {
+    let place = clamp(depth * 16.0 - 0.5, 0.0, 15.0);
     return mat4x4f(
-        peelnet_in_bins(level, depth, 0.0) / 255.0,
-        peelnet_in_bins(level, depth, 4.0) / 255.0,
-        peelnet_in_bins(level, depth, 8.0) / 255.0,
-        peelnet_in_bins(level, depth, 12.0) / 255.0,
+        peelnet_in_bins(level, place, 0.0),
+        peelnet_in_bins(level, place, 4.0),
+        peelnet_in_bins(level, place, 8.0),
+        peelnet_in_bins(level, place, 12.0),
     );
+}
+
+// What a fragment adds to the bins of its tile, of 8 bits.
+fn peelnet_tile_bins(alpha: f32, zeta: f32) -> mat4x4f {
+    return peelnet_tile_levels(peelnet_level(peelnet_absorbance(alpha)), 0.5 * zeta + 0.5);
 }
 
 // What a fragment writes as the nearest of its tile's pixel, where the most is kept.
@@ -195,33 +209,32 @@ fn peelnet_tile_nearest(alpha: f32, zeta: f32) -> f32 {
     return peelnet_halves(vec3f((PEELNET_TILE_DEPTHS - 1.0 - bin) * PEELNET_TILE_OPACITIES + opacity)).x;
 }
 
-// Of four bins what is seen behind the nearest fragment. front: the levels of all bins before them.
-fn peelnet_seen(bins: vec4f, taken: vec4f, front: f32) -> vec4f {
-    let two = bins.x + bins.y;
-    let before = vec4f(front) + vec4f(0.0, bins.x, two, two + bins.z);
-    let seen = exp(before * (-1.0 / PEELNET_BIN_LEVELS)) - exp((before + bins) * (-1.0 / PEELNET_BIN_LEVELS));
-    return seen * max(bins - taken, vec4f(0.0)) / max(bins, vec4f(1.0));
+// What the columns of bins before each hold together.
+fn peelnet_before(bins: mat4x4f) -> vec4f {
+    let all = vec4f(1.0) * bins;
+    return vec4f(0.0, all.x, all.x + all.y, all.x + all.y + all.z);
+}
+
+// Of four bins what is seen behind the nearest fragment. before: what all bins before them hold.
+fn peelnet_seen(bins: vec4f, taken: vec4f, before: f32) -> vec4f {
+    let through = peelnet_seen_behind(before, bins);
+    let seen = vec4f(exp(before * (-255.0 / PEELNET_BIN_LEVELS)), through.xyz) - through;
+    return seen * max(bins - taken, vec4f(0.0)) / max(bins, vec4f(1.0 / 255.0));
 }
 
 // What is seen in a tile's pixel behind its nearest fragment. bins, nearest: as the targets hold them.
 fn peelnet_tile_seen(bins: mat4x4f, nearest: f32) -> mat4x4f {
-    let a = floor(bins[0] * 255.0 + 0.5);
-    let b = floor(bins[1] * 255.0 + 0.5);
-    let c = floor(bins[2] * 255.0 + 0.5);
-    let d = floor(bins[3] * 255.0 + 0.5);
     let level = max(peelnet_levels(vec3f(nearest)).x, 0.0);
     let back = floor(level * (1.0 / PEELNET_TILE_OPACITIES));
     let opacity = (level - back * PEELNET_TILE_OPACITIES) * (1.0 / (PEELNET_TILE_OPACITIES - 1.0));
     let depth = (PEELNET_TILE_DEPTHS - back - 0.5) / PEELNET_TILE_DEPTHS;
-    let taken = peelnet_level(opacity / (1.0625 - opacity));
-    let to_b = dot(a, vec4f(1.0));
-    let to_c = to_b + dot(b, vec4f(1.0));
-    let to_d = to_c + dot(c, vec4f(1.0));
+    let taken = peelnet_tile_levels(peelnet_level(opacity / (1.0625 - opacity)), depth);
+    let before = peelnet_before(bins);
     return mat4x4f(
-        peelnet_seen(a, peelnet_in_bins(taken, depth, 0.0), 0.0),
-        peelnet_seen(b, peelnet_in_bins(taken, depth, 4.0), to_b),
-        peelnet_seen(c, peelnet_in_bins(taken, depth, 8.0), to_c),
-        peelnet_seen(d, peelnet_in_bins(taken, depth, 12.0), to_d),
+        peelnet_seen(bins[0], taken[0], before.x),
+        peelnet_seen(bins[1], taken[1], before.y),
+        peelnet_seen(bins[2], taken[2], before.z),
+        peelnet_seen(bins[3], taken[3], before.w),
     );
 }
 
@@ -232,26 +245,25 @@ fn peelnet_passed(share: f32, before: f32, bins: vec4f) -> f32 {
     return dot(clamp((vec4f(share) - begin) / max(bins, vec4f(1e-9)), vec4f(0.0), vec4f(1.0)), vec4f(1.0));
 }
 
+// The depth before which a share of sixteen bins lies. before: as of peelnet_before.
+fn peelnet_depth_at(share: f32, bins: mat4x4f, before: vec4f) -> f32 {
+    let front = peelnet_passed(share, before.x, bins[0]) + peelnet_passed(share, before.y, bins[1]);
+    return 0.0625 * (front + peelnet_passed(share, before.z, bins[2]) + peelnet_passed(share, before.w, bins[3]));
+}
+
 // The quantiles of what is seen in nine pixels together.
 fn peelnet_quantiles(seen: mat4x4f) -> vec4f {
     // Evenly spread where nothing is known.
-    let a = seen[0] + 0.00125;
-    let b = seen[1] + 0.00125;
-    let c = seen[2] + 0.00125;
-    let d = seen[3] + 0.00125;
-    let to_b = dot(a, vec4f(1.0));
-    let to_c = to_b + dot(b, vec4f(1.0));
-    let to_d = to_c + dot(c, vec4f(1.0));
-    let shares = peelnet_even() * (to_d + dot(d, vec4f(1.0)));
-    let first = peelnet_passed(shares.x, 0.0, a) + peelnet_passed(shares.x, to_b, b)
-        + peelnet_passed(shares.x, to_c, c) + peelnet_passed(shares.x, to_d, d);
-    let second = peelnet_passed(shares.y, 0.0, a) + peelnet_passed(shares.y, to_b, b)
-        + peelnet_passed(shares.y, to_c, c) + peelnet_passed(shares.y, to_d, d);
-    let third = peelnet_passed(shares.z, 0.0, a) + peelnet_passed(shares.z, to_b, b)
-        + peelnet_passed(shares.z, to_c, c) + peelnet_passed(shares.z, to_d, d);
-    let fourth = peelnet_passed(shares.w, 0.0, a) + peelnet_passed(shares.w, to_b, b)
-        + peelnet_passed(shares.w, to_c, c) + peelnet_passed(shares.w, to_d, d);
-    return vec4f(first, second, third, fourth) * 0.0625;
+    let even = vec4f(0.00125);
+    let bins = seen + mat4x4f(even, even, even, even);
+    let before = peelnet_before(bins);
+    let shares = peelnet_even() * (before.w + dot(bins[3], vec4f(1.0)));
+    return vec4f(
+        peelnet_depth_at(shares.x, bins, before),
+        peelnet_depth_at(shares.y, bins, before),
+        peelnet_depth_at(shares.z, bins, before),
+        peelnet_depth_at(shares.w, bins, before),
+    );
 }
 
 // Values without bound in 0 .. 1, in even steps of a root, and back.

@@ -96,10 +96,41 @@ fn peelnet_levels(halves: vec3f) -> vec3f {
     return 30719.5 + sign(halves) * from_middle;
 }
 
-// Fragments of less opacity are composited, but are never a slab's nearest or farthest.
-const PEELNET_FAINT: f32 = 0.003921569;
 // Levels of 8 bits that an absorbance of 1 is.
 const PEELNET_BIN_LEVELS: f32 = 64.0;
+
+// A depth on a scale without two gaps in which no transparent surface lies, -1 .. 1 again. gaps: the ends of the nearer and of the farther one, as
+// zeta; four times 1 where there is none. The same in all passes of a frame.
+fn peelnet_cut(zeta: f32, gaps: vec4f) -> f32 {
+    let lengths = gaps.yw - gaps.xz;
+    let passed = clamp(vec2f(zeta) - gaps.xz, vec2f(0.0), lengths);
+    let kept = zeta + 1.0 - passed.x - passed.y;
+    return kept * (2.0 / (2.0 - lengths.x - lengths.y)) - 1.0;
+}
+
+// An absorbance as a level of 8 bits. At least one: a bin with any fragment is not empty.
+fn peelnet_level(absorbance: f32) -> f32 {
+    return max(floor(absorbance * PEELNET_BIN_LEVELS + 0.5), 1.0);
+}
+
+// What a level adds to four bins from a first one, 0 .. 1. It is shared between the two bins whose middles it lies between, so that little
+// changes as it moves from one to the other, and in whole levels, so that no order of adding changes a sum. place: 0 in the middle of bin 0,
+// 1 in that of the next.
+fn peelnet_in_bins(level: f32, place: f32, first: f32) -> vec4f {
+    let middles = vec4f(first, first + 1.0, first + 2.0, first + 3.0);
+    let shares = max(vec4f(1.0) - abs(vec4f(place) - middles), vec4f(0.0));
+    return floor(level * shares + 0.5) / 255.0;
+}
+
+// What is let through by each of four bins and by what is before it.
+fn peelnet_seen_behind(before: f32, bins: vec4f) -> vec4f {
+    let two = bins.x + bins.y;
+    let levels = vec4f(before) + vec4f(bins.x, two, two + bins.z, two + bins.z + bins.w);
+    return exp(levels * (-255.0 / PEELNET_BIN_LEVELS));
+}
+
+// Fragments of less opacity are composited, but are never a slab's nearest or farthest.
+const PEELNET_FAINT: f32 = 0.003921569;
 // Bins of depth in a slab, and levels of opacity in each, that its nearest and its farthest fragment are kept with.
 const PEELNET_BINS: f32 = 1920.0;
 const PEELNET_OPACITIES: f32 = 32.0;
@@ -138,15 +169,6 @@ struct PeelnetBetween {
     nearest: f32,
 }
 
-// A depth on a scale without two gaps in which no transparent surface lies, -1 .. 1 again. gaps: the ends of the nearer and of the farther one, as
-// zeta; four times 1 where there is none. The same in all passes of a frame.
-fn peelnet_cut(zeta: f32, gaps: vec4f) -> f32 {
-    let lengths = gaps.yw - gaps.xz;
-    let passed = clamp(vec2f(zeta) - gaps.xz, vec2f(0.0), lengths);
-    let kept = zeta + 1.0 - passed.x - passed.y;
-    return kept * (2.0 / (2.0 - lengths.x - lengths.y)) - 1.0;
-}
-
 // What is known of a pixel's depths, in 8 bits.
 struct PeelnetBins {
     // Absorbances of eight bins of the frame's depth, nearest first.
@@ -170,22 +192,11 @@ fn peelnet_ends_of(range: vec2f) -> vec2f {
     return vec2f(nearest, max(levels.y, nearest + 1.0));
 }
 
-// What a fragment writes. Its absorbance is added, shared between the two bins whose middles it lies between, so that little changes as it
-// moves from one to the other, and in whole levels, so that no order of adding changes a sum.
+// What a fragment writes: what it adds to the bins, and its depth.
 fn peelnet_bins(alpha: f32, zeta: f32) -> PeelnetBins {
-    let place = vec4f(clamp(zeta * 4.0 + 3.5, 0.0, 7.0));
-    // At least one: a bin with any fragment is not empty.
-    let level = max(floor(peelnet_absorbance(alpha) * PEELNET_BIN_LEVELS + 0.5), 1.0);
-    let front = max(vec4f(1.0) - abs(place - vec4f(0.0, 1.0, 2.0, 3.0)), vec4f(0.0));
-    let back = max(vec4f(1.0) - abs(place - vec4f(4.0, 5.0, 6.0, 7.0)), vec4f(0.0));
-    return PeelnetBins(floor(level * front + 0.5) / 255.0, floor(level * back + 0.5) / 255.0, peelnet_range_of(zeta));
-}
-
-// What is let through by each of four bins and by what is before it.
-fn peelnet_seen_behind(before: f32, bins: vec4f) -> vec4f {
-    let two = bins.x + bins.y;
-    let levels = vec4f(before) + vec4f(bins.x, two, two + bins.z, two + bins.z + bins.w);
-    return exp(levels * (-255.0 / PEELNET_BIN_LEVELS));
+    let place = clamp(zeta * 4.0 + 3.5, 0.0, 7.0);
+    let level = peelnet_level(peelnet_absorbance(alpha));
+    return PeelnetBins(peelnet_in_bins(level, place, 0.0), peelnet_in_bins(level, place, 4.0), peelnet_range_of(zeta));
 }
 
 // How much of eight bins lies before a place among them: twice that, and a number that is the same for all places.

@@ -1,9 +1,12 @@
 //! `one` over several tiles of pixels: what its CPU reference, of a pixel alone, does not know.
 
 use peelnet_core::{
-    absorbance::{DepthWarp, absorbance},
-    fragment::Fragment,
-    methods::one::{self, Around, Design, Tiles, depth_of, formula, seen_behind_nearest},
+    absorbance::DepthWarp,
+    fragment::{self, Fragment},
+    methods::{
+        one::{self, Around, Design, Tiles, formula, seen_behind_nearest},
+        slabs,
+    },
 };
 use peelnet_scene::Material;
 use peelnet_tests::{HALF, draw, gpu, object, rectangle, scene, wall};
@@ -51,9 +54,8 @@ fn pixels_are_told_what_is_seen_around_them() {
         all().filter(|f| is_left || walls.contains(f)).collect()
     };
     let seen = |x: u32| {
-        let points = fragments(x).into_iter();
-        let points = points.map(|f| (absorbance(f.alpha), depth_of(&warp, f.depth)));
-        seen_behind_nearest(&points.collect::<Vec<_>>())
+        let points = fragment::points(&fragments(x));
+        seen_behind_nearest(&slabs::points(&points, &warp))
     };
     let middles = [0, 1, 2].map(|k| (k, seen(8 * k + 4)));
     let tiles = [0, 1]

@@ -1,7 +1,7 @@
 //! Functions that exist once in Rust and once in WGSL: evaluated on the GPU and compared.
 
 use peelnet_core::{
-    absorbance::{DepthWarp, absorbance},
+    absorbance::DepthWarp,
     fragment::{Fragment, points},
     guards,
     methods::{anchored, deep, dfaoit, nmt, one, slabs},
@@ -217,11 +217,9 @@ fn compare_sums(recipe: Recipe, of: &OneInputs, pixels: &[Vec<Fragment>], warp: 
         recipe,
         &NINE_OF_SUMS,
         pixels.iter().flat_map(|pixel| {
-            let each = pixel.iter().map(|f| {
-                let depth = one::depth_of(warp, f.depth);
-                (absorbance(f.alpha), depth, f.color)
-            });
-            let kept = one::Kept::gather(each, of.design, one::Around::NONE, exact);
+            let (list, colors) = (points(pixel), pixel.iter().map(|f| f.color));
+            let list = slabs::points(&list, warp);
+            let kept = one::Kept::gather(&list, colors, of.design, one::Around::NONE, exact);
             kept.rest().ahead.into_iter().take(of.design.middles.len())
         }),
         |a| {

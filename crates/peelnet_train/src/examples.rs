@@ -2,12 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use peelnet_core::absorbance::{DepthWarp, absorbance};
+use peelnet_core::absorbance::DepthWarp;
 use peelnet_core::files::shown;
 use peelnet_core::methods::known::KnownFragment;
-use peelnet_core::methods::one::{
-    Around, Quantiles, TILE, TILE_BINS, Tiles, depth_of, seen_behind_nearest,
-};
+use peelnet_core::methods::one::{Around, Quantiles, TILE, TILE_BINS, Tiles, seen_behind_nearest};
+use peelnet_core::methods::slabs::points;
 use peelnet_core::statistics::SumPrecision;
 use peelnet_dataset::{
     Column, Dataset, DatasetError, FragmentBatch, Part, Split, Subset, check_rows,
@@ -17,7 +16,7 @@ use peelnet_model::inputs::{Examples, Observed, PeeledPixel, PixelSums};
 
 use crate::draws::Sample;
 use crate::error::TrainError;
-use crate::table::{ALPHA, COLOR, EXACT, KNOWN, LEFT, RESIDUAL, SUM, TrainingData};
+use crate::table::{EXACT, KNOWN, LEFT, SUM, TrainingData};
 
 const ROWS_AT_A_TIME: usize = 1 << 16;
 
@@ -67,9 +66,9 @@ impl View<'_> {
                 if best.get(&tile).is_none_or(|best| distance < best.0) {
                     let rows = batch.linear_depth[pixel.clone()].iter();
                     let rows = rows.zip(&batch.one_minus_alpha[pixel]);
-                    let fragments = rows.map(|(&z, &t)| (absorbance(1.0 - t), depth_of(warp, z)));
-                    let fragments: Vec<_> = fragments.collect();
-                    best.insert(tile, (distance, seen_behind_nearest(&fragments)));
+                    let fragments: Vec<_> = rows.map(|(&z, &t)| (z, 1.0 - t)).collect();
+                    let seen = seen_behind_nearest(&points(&fragments, warp));
+                    best.insert(tile, (distance, seen));
                 }
             }
         }
@@ -256,14 +255,8 @@ fn pixel_example(
         let a = f64::from(pixel.observed.fragments[i].1) * fragment.weight(|_| 0.0);
         if let Some(inputs) = &fragment.unknown {
             let [low, high] = fragment.bounds;
-            data.push_row(inputs.iter().copied(), [exact]);
-            if let Some(pixels) = &mut data.pixels {
-                pixels.rows[RESIDUAL].push((fragment.absorbance * (high - low)) as f32);
-                pixels.rows[ALPHA].push(a as f32);
-                for (column, c) in pixels.rows[COLOR..].iter_mut().zip(color) {
-                    column.push(c);
-                }
-            }
+            let residual = fragment.absorbance * (high - low);
+            guessed_row(data, inputs, exact, [residual, a], color);
         } else if apart {
             left -= a;
         } else {
@@ -275,13 +268,7 @@ fn pixel_example(
         }
     }
     fixed[LEFT] = left.max(0.0) as f32;
-    if let Some(pixels) = &mut data.pixels {
-        pixels.first.push(first);
-        for (column, value) in pixels.fixed.iter_mut().zip(fixed) {
-            column.push(value);
-        }
-    }
-    data.end_example(1.0, subset);
+    end_pixel(data, first, fixed, subset);
 }
 
 /// The sums of a pixel. What is known is left out of the exact colour.
@@ -293,17 +280,37 @@ fn sums_example(data: &mut TrainingData, subset: Subset, pixel: PixelSums) {
         *fixed = c as f32;
     }
     for sum in pixel.sums {
-        data.push_row(sum.inputs, [sum.exact]);
-        if let Some(pixels) = &mut data.pixels {
-            pixels.rows[RESIDUAL].push(sum.absorbance as f32);
-            pixels.rows[ALPHA].push(sum.weight as f32);
-            for (k, c) in sum.color.into_iter().enumerate() {
-                pixels.rows[COLOR + k].push(c as f32);
-                // The loss counts what is exact of each row once more.
-                fixed[EXACT + k] -= (c * sum.exact) as f32;
-            }
+        let numbers = [sum.absorbance, sum.weight];
+        let color = sum.color.map(|c| c as f32);
+        guessed_row(data, &sum.inputs, sum.exact, numbers, color);
+        // The loss counts what is exact of each row once more.
+        for (fixed, c) in fixed[EXACT..].iter_mut().zip(sum.color) {
+            *fixed -= (c * sum.exact) as f32;
         }
     }
+    end_pixel(data, first, fixed, subset);
+}
+
+/// A row of a pixel that the network is asked about; the numbers are those of the columns `RESIDUAL` and `ALPHA`, which come first.
+fn guessed_row(
+    data: &mut TrainingData,
+    inputs: &[f64],
+    exact: f64,
+    numbers: [f64; 2],
+    color: [f32; 3],
+) {
+    data.push_row(inputs.iter().copied(), [exact]);
+    if let Some(pixels) = &mut data.pixels {
+        let [residual, alpha] = numbers.map(|x| x as f32);
+        let [r, g, b] = color;
+        for (column, value) in pixels.rows.iter_mut().zip([residual, alpha, r, g, b]) {
+            column.push(value);
+        }
+    }
+}
+
+/// The pixel of the rows from the first on.
+fn end_pixel(data: &mut TrainingData, first: u32, fixed: [f32; 8], subset: Subset) {
     if let Some(pixels) = &mut data.pixels {
         pixels.first.push(first);
         for (column, value) in pixels.fixed.iter_mut().zip(fixed) {

@@ -1,6 +1,6 @@
 // One pass: the exported text's sums of each fragment, and the nearest fragment with its colour.
 // Variants: none | wide | frame | wide frame
-@if(!frame) import package::helpers::one::{corners_of, quantiles_of};
+@if(!frame) import package::helpers::one::{between, tiles_around};
 import package::helpers::slabs::zeta_of;
 @if(frame) import package::learned::weight::peelnet_even;
 import package::learned::weight::{peelnet_noise, peelnet_statistics};
@@ -29,11 +29,10 @@ fn fragment_main(surface: Surface) -> Sums {
     }
     let color = shade(surface);
     let pixel = vec2u(surface.position.xy);
-    @if(!frame) let corners = corners_of(pixel, camera.frame_size);
-    @if(!frame) let above = mix(quantiles_of(quantiles[corners.above.x]), quantiles_of(quantiles[corners.above.y]), corners.part.x);
-    @if(!frame) let below = mix(quantiles_of(quantiles[corners.below.x]), quantiles_of(quantiles[corners.below.y]), corners.part.x);
+    @if(!frame) let tiles = tiles_around(pixel, camera.frame_size);
+    @if(!frame) let at = tiles.numbers;
     @if(frame) let around = peelnet_even();
-    @else let around = mix(above, below, corners.part.y);
+    @else let around = between(vec4u(quantiles[at.x], quantiles[at.y], quantiles[at.z], quantiles[at.w]), tiles.part);
     // Not multiplied by the opacity.
     let rgb = color.rgb / max(color.a, 1e-6);
     let s = peelnet_statistics(color.a, rgb, zeta_of(surface.depth_linear), around, peelnet_noise(pixel));

@@ -1,6 +1,5 @@
 // One pass, between its passes: the quantiles of each tile, of what is seen in the nine around it.
 // Loops: 2: three rows, and three columns.
-import package::helpers::one::stored;
 import package::learned::weight::{peelnet_quantiles, peelnet_tile_seen};
 
 // Width and height of the frame.
@@ -10,7 +9,7 @@ import package::learned::weight::{peelnet_quantiles, peelnet_tile_seen};
 @group(0) @binding(3) var bins_c: texture_2d<f32>;
 @group(0) @binding(4) var bins_d: texture_2d<f32>;
 @group(0) @binding(5) var bins_e: texture_2d<f32>;
-@group(0) @binding(6) var nearest: texture_2d<f32>;
+@group(0) @binding(6) var tile_nearest: texture_2d<f32>;
 @group(0) @binding(7) var<storage, read_write> quantiles: array<u32>;
 
 @compute @workgroup_size(64)
@@ -31,8 +30,8 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: ve
                 textureLoad(bins_c, at, 0),
                 vec4f(textureLoad(bins_d, at, 0).xy, textureLoad(bins_e, at, 0).xy),
             );
-            sum += peelnet_tile_seen(bins, textureLoad(nearest, at, 0).x);
+            sum += peelnet_tile_seen(bins, textureLoad(tile_nearest, at, 0).x);
         }
     }
-    quantiles[index] = stored(peelnet_quantiles(sum));
+    quantiles[index] = pack4x8unorm(peelnet_quantiles(sum));
 }

@@ -1,6 +1,6 @@
 // One pass: the exported text's resolve; its colour over black alone where light takes a colour.
 // Variants: none | wide | frame | wide frame | tinted | wide tinted | frame tinted | wide frame tinted
-@if(!frame) import package::helpers::one::{corners_of, quantiles_of};
+@if(!frame) import package::helpers::one::{between, tiles_around};
 @if(frame) import package::learned::weight::peelnet_even;
 import package::learned::weight::peelnet_noise;
 @if(tinted) import package::learned::weight::peelnet_pixel;
@@ -22,11 +22,10 @@ import package::learned::weight::peelnet_noise;
 fn fragment_main(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let pixel = vec2u(position.xy);
     let behind = textureLoad(background, pixel, 0).rgb;
-    @if(!frame) let corners = corners_of(pixel, textureDimensions(absorbances));
-    @if(!frame) let above = mix(quantiles_of(quantiles[corners.above.x]), quantiles_of(quantiles[corners.above.y]), corners.part.x);
-    @if(!frame) let below = mix(quantiles_of(quantiles[corners.below.x]), quantiles_of(quantiles[corners.below.y]), corners.part.x);
+    @if(!frame) let tiles = tiles_around(pixel, textureDimensions(absorbances));
+    @if(!frame) let at = tiles.numbers;
     @if(frame) let around = peelnet_even();
-    @else let around = mix(above, below, corners.part.y);
+    @else let around = between(vec4u(quantiles[at.x], quantiles[at.y], quantiles[at.z], quantiles[at.w]), tiles.part);
     let noise = peelnet_noise(pixel);
     let a = textureLoad(sum_a, pixel, 0);
     let b = textureLoad(sum_b, pixel, 0);

@@ -12,9 +12,13 @@
 //! of depth, counted from the far end, in the high part, and a value in the low part, so that all four are of the same fragment.
 //! The shaders are `learned/one.wgsl` and the file of a design.
 
+use super::{
+    Point,
+    slabs::{BIN_LEVELS, bins_of, points},
+};
 use crate::{
-    absorbance::{DepthWarp, absorbance},
-    fragment::Fragment,
+    absorbance::DepthWarp,
+    fragment::{self, Fragment},
     statistics::{NEAREST_CODE, SumPrecision},
 };
 use std::collections::BTreeMap;
@@ -84,34 +88,23 @@ impl Quantiles {
     }
 }
 
-/// Absorbance in levels of 8 bits.
-const BIN_LEVELS: f64 = super::slabs::BIN_LEVELS;
-
-/// How a level is shared between bins: linearly between the two whose middles a depth lies between, in whole levels.
-fn in_bins(level: f64, depth: f64) -> [f64; TILE_BINS] {
-    let last = TILE_BINS as f64 - 1.0;
-    let place = (depth * TILE_BINS as f64 - 0.5).clamp(0.0, last);
-    std::array::from_fn(|k| {
-        let share = (1.0 - (place - k as f64).abs()).max(0.0);
-        (level * share + 0.5).floor()
-    })
-}
-
-/// What is seen of a pixel behind its nearest fragment, by bins of depth. Fragments are absorbances and depths, 0 … 1.
-pub fn seen_behind_nearest(fragments: &[(f64, f64)]) -> [f64; TILE_BINS] {
-    let (mut bins, mut nearest) = ([0.0f64; TILE_BINS], 0);
-    let level = |b: f64| (BIN_LEVELS * b + 0.5).floor().max(1.0);
-    for &(b, depth) in fragments {
-        for (sum, own) in bins.iter_mut().zip(in_bins(level(b), depth)) {
-            *sum = (*sum + own).min(255.0);
-        }
-        nearest = nearest.max(NEAREST_CODE.mirrored(2.0 * depth - 1.0, b));
-    }
-    if fragments.is_empty() {
-        return bins;
-    }
-    let zeta = -NEAREST_CODE.zeta(nearest);
-    let taken = in_bins(level(NEAREST_CODE.absorbance(nearest)), 0.5 * zeta + 0.5);
+/// What is seen of a pixel behind its nearest fragment, by bins of depth.
+pub fn seen_behind_nearest(fragments: &[Point]) -> [f64; TILE_BINS] {
+    let levels = fragments
+        .iter()
+        .map(|&(b, zeta, _)| NEAREST_CODE.mirrored(zeta, b));
+    let Some(nearest) = levels.max() else {
+        return [0.0; TILE_BINS];
+    };
+    let nearest = (
+        NEAREST_CODE.absorbance(nearest),
+        -NEAREST_CODE.zeta(nearest),
+        true,
+    );
+    let (bins, taken) = (
+        bins_of(fragments, TILE_BINS),
+        bins_of(&[nearest], TILE_BINS),
+    );
     let mut front = 0.0f64;
     std::array::from_fn(|k| {
         let (all, rest) = (bins[k] / BIN_LEVELS, (bins[k] - taken[k]).max(0.0));
@@ -126,8 +119,9 @@ pub fn seen_behind_nearest(fragments: &[(f64, f64)]) -> [f64; TILE_BINS] {
 pub struct Tiles {
     /// The last column and the last row.
     last: [u32; 2],
-    /// Of tiles that have one beside them in which anything is seen.
+    /// Of tiles that have one beside them in which anything is seen, and of all others.
     quantiles: BTreeMap<[u32; 2], Quantiles>,
+    elsewhere: Quantiles,
 }
 
 impl Tiles {
@@ -152,22 +146,22 @@ impl Tiles {
         Self {
             last,
             quantiles: tiles.map(|tile| (tile, around(tile))).collect(),
+            elsewhere: Quantiles::of_seen([1.0; TILE_BINS]),
         }
     }
 
     /// Of a pixel, linear between the middles of tiles.
     pub fn at(&self, pixel: [u32; 2]) -> Quantiles {
         let place = pixel.map(|k| (f64::from(k) + 0.5) / f64::from(TILE) - 0.5);
-        let nothing = Quantiles::of_seen([1.0; TILE_BINS]);
         let mut all = [0.0; 4];
-        for corner in 0..4u32 {
+        for beside in 0..4u32 {
             let mut weight = 1.0;
             let tile = [0, 1].map(|axis| {
-                let (low, far) = (place[axis].floor(), f64::from(corner >> axis & 1));
+                let (low, far) = (place[axis].floor(), f64::from(beside >> axis & 1));
                 weight *= 1.0 - (place[axis] - low - far).abs();
                 (low + far).clamp(0.0, f64::from(self.last[axis])) as u32
             });
-            let Quantiles(of) = self.quantiles.get(&tile).unwrap_or(&nothing);
+            let Quantiles(of) = self.quantiles.get(&tile).unwrap_or(&self.elsewhere);
             all.iter_mut()
                 .zip(of)
                 .for_each(|(sum, q)| *sum += weight * q);
@@ -176,7 +170,7 @@ impl Tiles {
     }
 }
 
-/// What a pixel is told besides its fragments.
+/// What is known of a pixel besides its fragments.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Around {
     pub quantiles: Quantiles,
@@ -313,9 +307,10 @@ pub struct Rest {
 }
 
 impl Kept {
-    /// Of fragments in any order: absorbance, depth 0 … 1 and colour.
+    /// Of fragments in any order, with their colours.
     pub fn gather(
-        fragments: impl IntoIterator<Item = (f64, f64, [f32; 3])>,
+        fragments: &[Point],
+        colors: impl IntoIterator<Item = [f32; 3]>,
         design: Design,
         around: Around,
         precision: SumPrecision,
@@ -326,7 +321,8 @@ impl Kept {
             sums: Default::default(),
             levels: [0; 4],
         };
-        for (b, depth, color) in fragments {
+        for (&(b, zeta, _), color) in fragments.iter().zip(colors) {
+            let depth = depth_of(zeta);
             let shares = design.shares(around.quantiles.place(depth));
             let [red, green, blue] = color.map(f64::from);
             for (sum, share) in kept.sums.iter_mut().zip(shares) {
@@ -448,39 +444,35 @@ impl Rest {
     }
 }
 
-/// The transmittance in front of each fragment that a pixel's colour stands for, given absorbances and depths as to [`Kept::gather`]: of the
-/// nearest 1, of others what all sums together show of it.
+/// The transmittance in front of each fragment that a pixel's colour stands for, given as (linear depth, α): of the nearest 1, of others what
+/// all sums together show of it.
 pub fn transmittances(
-    fragments: &[(f64, f64)],
+    fragments: &[(f32, f32)],
+    warp: &DepthWarp,
     design: Design,
     around: Around,
     precision: SumPrecision,
     answer: impl Fn(&Ahead) -> f64,
 ) -> Vec<f64> {
-    let grey = fragments.iter().map(|&(b, depth)| (b, depth, [0.0; 3]));
-    let rest = Kept::gather(grey, design, around, precision).rest();
-    let parts: Vec<f64> = rest
-        .ahead
-        .iter()
-        .map(|ahead| ahead.seen(answer(ahead)))
-        .collect();
+    let points = points(fragments, warp);
+    let grey = std::iter::repeat([0.0; 3]);
+    let rest = Kept::gather(&points, grey, design, around, precision).rest();
+    let ahead = rest.ahead.iter();
+    let parts: Vec<f64> = ahead.map(|ahead| ahead.seen(answer(ahead))).collect();
     let sums = rest.sums.iter().zip(&parts);
     let all: f64 = sums.map(|(sum, part)| sum[3] * part).sum();
-    let nearest = fragments.iter().map(|f| f.1).fold(f64::MAX, f64::min);
-    let of = |&(b, depth): &(f64, f64)| {
-        if depth == nearest || all <= 0.0 {
+    let nearest = points.iter().map(|f| f.1).fold(f64::MAX, f64::min);
+    let of = |&(b, zeta, _): &Point| {
+        if zeta == nearest || all <= 0.0 {
             return 1.0;
         }
-        let shares = design.shares(around.quantiles.place(depth));
-        let seen: f64 = shares
-            .iter()
-            .zip(&parts)
-            .map(|(share, part)| share * part)
-            .sum();
+        let shares = design.shares(around.quantiles.place(depth_of(zeta)));
+        let seen = shares.iter().zip(&parts).map(|(share, part)| share * part);
         // `b / α` of it is 1 where it is faint.
-        (rest.left * seen / all * b / -(-b).exp_m1().min(-f64::MIN_POSITIVE)).clamp(0.0, 1.0)
+        let weight = b / -(-b).exp_m1().min(-f64::MIN_POSITIVE);
+        (rest.left * seen.sum::<f64>() / all * weight).clamp(0.0, 1.0)
     };
-    fragments.iter().map(of).collect()
+    points.iter().map(of).collect()
 }
 
 /// The answer without a network.
@@ -497,17 +489,16 @@ pub fn composite(
     around: Around,
     answer: impl Fn(&Ahead) -> f64,
 ) -> [f32; 3] {
-    let each = fragments
-        .iter()
-        .map(|f| (absorbance(f.alpha), depth_of(warp, f.depth), f.color));
-    let rest = Kept::gather(each, design, around, SumPrecision::Exact).rest();
+    let points = points(&fragment::points(fragments), warp);
+    let colors = fragments.iter().map(|f| f.color);
+    let rest = Kept::gather(&points, colors, design, around, SumPrecision::Exact).rest();
     let color = rest.color(answer);
     std::array::from_fn(|c| (color[c] + (1.0 - rest.coverage) * f64::from(background[c])) as f32)
 }
 
-/// A linear depth on the frame's scale without gaps, 0 … 1.
-pub fn depth_of(warp: &DepthWarp, depth: f32) -> f64 {
-    0.5 * warp.cut(depth.into()) + 0.5
+/// A warped depth as 0 … 1 of the frame's.
+pub fn depth_of(zeta: f64) -> f64 {
+    0.5 * zeta + 0.5
 }
 
 #[cfg(test)]
@@ -519,6 +510,11 @@ mod tests {
 
     fn warp() -> DepthWarp {
         DepthWarp::new(1.0, 8.0)
+    }
+
+    /// A fragment of an absorbance at a depth, 0 … 1.
+    fn at(absorbance: f64, depth: f64) -> Point {
+        (absorbance, 2.0 * depth - 1.0, true)
     }
 
     fn of(fragments: &[Fragment], design: Design) -> [f32; 3] {
@@ -594,13 +590,13 @@ mod tests {
     /// Behind a nearest fragment of absorbance 1 lies one of 2: what is seen of it is `e^−1 (1 − e^−2)`, in its own two bins.
     #[test]
     fn what_is_seen_behind_the_nearest_is_in_its_bins() {
-        let seen = seen_behind_nearest(&[(2.0, 0.7), (1.0, 0.1)]);
+        let seen = seen_behind_nearest(&[at(2.0, 0.7), at(1.0, 0.1)]);
         let want = (-1.0f64).exp() * -(-2.0f64).exp_m1();
         // Levels of 1/64, and what a step of the nearest fragment's opacity leaves of it.
         assert!((seen.iter().sum::<f64>() - want).abs() < 0.02, "{seen:?}");
         // A step of the nearest fragment's opacity is left in its own bin.
         assert!((seen[10] + seen[11]) / want > 0.95, "{seen:?}");
-        let alone = seen_behind_nearest(&[(1.0, 0.4)]);
+        let alone = seen_behind_nearest(&[at(1.0, 0.4)]);
         // Its depth is known to half of 1/240, a thirtieth of a bin, which moves that much of it to the next.
         assert!(alone.iter().sum::<f64>() < 0.04, "{alone:?}");
     }
@@ -608,7 +604,7 @@ mod tests {
     /// Where all tiles see the same, so do all pixels; beside a tile that sees nothing the quantiles are those of what is seen.
     #[test]
     fn tiles_see_what_is_around_them() {
-        let seen = seen_behind_nearest(&[(1.0, 0.1), (1.0, 0.3), (1.0, 0.5)]);
+        let seen = seen_behind_nearest(&[at(1.0, 0.1), at(1.0, 0.3), at(1.0, 0.5)]);
         let frame = |columns, seen: &[[f64; TILE_BINS]]| {
             let places = (0..).map(|k| [k % columns, k / columns]);
             let rows = seen.len() as u32 / columns;
@@ -639,15 +635,23 @@ mod tests {
     #[test]
     fn transmittances_add_up() {
         let fragments = worked_example();
-        let places = fragments.map(|f| (absorbance(f.alpha), depth_of(&warp(), f.depth)));
+        let places = fragments.map(|f| (f.depth, f.alpha));
         for design in DESIGNS {
-            let t = transmittances(&places, design, Around::NONE, SumPrecision::Exact, formula);
+            let t = transmittances(
+                &places,
+                &warp(),
+                design,
+                Around::NONE,
+                SumPrecision::Exact,
+                formula,
+            );
             assert_eq!(t[0], 1.0);
             let seen = fragments
                 .iter()
                 .zip(&t)
                 .map(|(f, t)| f64::from(f.alpha) * t);
-            let coverage = 1.0 - places.iter().map(|(b, _)| (-b).exp()).product::<f64>();
+            let behind = fragments.iter().map(|f| 1.0 - f64::from(f.alpha));
+            let coverage = 1.0 - behind.product::<f64>();
             // The record's opacity is off by half a step.
             assert!((seen.sum::<f64>() - coverage).abs() < 0.03, "{t:?}");
         }

@@ -43,7 +43,7 @@ pub trait NetworkInputs: Any + fmt::Debug + Sync {
         false
     }
 
-    /// Whether they depend on the pixels around, as [`Observed::around`] has it.
+    /// Whether they depend on [`Observed::around`]. Not asked of [`Self::surroundings`], which designs that are only compared do not have.
     fn reads_around(&self) -> bool {
         false
     }

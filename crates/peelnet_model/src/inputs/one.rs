@@ -2,9 +2,12 @@
 
 use super::{feature::*, network_inputs::*, surroundings::*};
 use peelnet_core::{
-    absorbance::{DepthWarp, absorbance},
+    absorbance::DepthWarp,
     fragment::Fragment,
-    methods::one::{self, Ahead, Around, Design, Kept, Rest, depth_of, formula},
+    methods::{
+        one::{self, Ahead, Around, Design, Kept, Rest, TILE, depth_of, formula},
+        slabs::points,
+    },
 };
 
 const OF_TOTAL: &str = "of the absorbance of all sums";
@@ -48,17 +51,11 @@ pub struct OneInputs {
 }
 
 impl OneInputs {
-    /// What targets hold of a pixel of known colours.
-    fn kept(&self, pixel: &Observed<'_>, colors: &[[f32; 3]]) -> Kept {
-        let fragments = pixel.fragments.iter().zip(colors);
-        let fragments = fragments.map(|(&(depth, alpha), &color)| {
-            (absorbance(alpha), depth_of(&pixel.warp, depth), color)
-        });
-        Kept::gather(fragments, self.design, pixel.around, pixel.precision)
-    }
-
     fn rest(&self, pixel: &PeeledPixel<'_>) -> Rest {
-        self.kept(&pixel.observed, pixel.colors).rest()
+        let (observed, colors) = (&pixel.observed, pixel.colors.iter().copied());
+        let points = points(observed.fragments, &observed.warp);
+        let (around, precision) = (observed.around, observed.precision);
+        Kept::gather(&points, colors, self.design, around, precision).rest()
     }
 }
 
@@ -72,14 +69,13 @@ impl NetworkInputs for OneInputs {
     }
 
     fn transmittances(&self, pixel: &Observed<'_>, network: Forward<'_>) -> Vec<f64> {
-        let place =
-            |&(depth, alpha): &(f32, f32)| (absorbance(alpha), depth_of(&pixel.warp, depth));
-        let fragments: Vec<_> = pixel.fragments.iter().map(place).collect();
         let answer = |ahead: &Ahead| network(&values(&NINE_OF_SUMS, ahead));
+        let (warp, around) = (&pixel.warp, pixel.around);
         one::transmittances(
-            &fragments,
+            pixel.fragments,
+            warp,
             self.design,
-            pixel.around,
+            around,
             pixel.precision,
             answer,
         )
@@ -99,7 +95,7 @@ impl NetworkInputs for OneInputs {
                 *sum += seen * f64::from(c);
             }
             if i > 0 {
-                let depth = depth_of(&observed.warp, observed.fragments[i].0);
+                let depth = depth_of(observed.warp.cut(observed.fragments[i].0.into()));
                 let shares = self.design.shares(observed.around.quantiles.place(depth));
                 exact
                     .iter_mut()
@@ -164,7 +160,7 @@ const BEFORE: &str = concat!(
 static AROUND: SmallTexture = SmallTexture {
     name: "quantiles",
     format: "rgba8unorm",
-    every: 8,
+    every: TILE,
     pass: pass(
         "around",
         &[],
@@ -214,6 +210,7 @@ static ONE: Surroundings = surroundings(
         "learned::zeta",
         "learned::absorbance",
         "learned::levels",
+        "learned::bins",
         "learned::one",
         "learned::one_narrow",
     ],
@@ -236,6 +233,7 @@ static WIDE: Surroundings = surroundings(
         "learned::zeta",
         "learned::absorbance",
         "learned::levels",
+        "learned::bins",
         "learned::one",
         "learned::one_wide",
     ],

@@ -150,11 +150,12 @@ pub const fn slab_surroundings(layout: Layout) -> &'static Surroundings {
     [&SMALL, &MEDIUM, &LARGE][layout as usize]
 }
 
-const fn modules(statistics: &'static str) -> [&'static str; 7] {
+const fn modules(statistics: &'static str) -> [&'static str; 8] {
     [
         "learned::zeta",
         "learned::absorbance",
         "learned::levels",
+        "learned::bins",
         "learned::slabs",
         statistics,
         "learned::resolve",

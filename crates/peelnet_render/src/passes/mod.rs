@@ -17,7 +17,7 @@ use crate::geometry::{
 use crate::gpu::{Kernel, bind::Bind, wgpu};
 use crate::methods::{MethodSpec, Precision};
 use compositor::{Build, Compositor, resolve};
-use peelnet_model::Recipe;
+use peelnet_model::{Recipe, inputs::Surroundings};
 use planned::{Planned, PlannedPass, Work};
 use views::Shows;
 
@@ -64,6 +64,26 @@ impl Target {
             full: true,
             ..Self::half(name, channels, blend)
         }
+    }
+
+    /// As an exported text's description has it.
+    pub fn described(target: &peelnet_model::inputs::Target) -> Self {
+        use peelnet_model::inputs::Blend as B;
+        let (channels, kind) = match target.format.split_once(|c: char| c.is_ascii_digit()) {
+            Some(("r", kind)) => (1, kind),
+            Some(("rg", kind)) => (2, kind),
+            other => (4, other.map_or("", |(_, kind)| kind)),
+        };
+        let blend = match (target.color, target.alpha, kind.ends_with("unorm")) {
+            (B::Add, B::Add, true) => Blend::AddBytes,
+            (B::Max, _, true) => Blend::MaxBytes,
+            (B::Add, B::Max, _) => Blend::AddMax,
+            (B::Max, B::Add, _) => Blend::MaxAdd,
+            (B::Add, ..) => Blend::Add,
+            (B::Max, ..) => Blend::Max,
+            (B::Transmit, ..) => Blend::Transmit,
+        };
+        Self::half(target.name, channels, blend)
     }
 
     /// Of one pixel in so many, both ways.
@@ -236,6 +256,27 @@ impl<'a> Passes<'a> {
 
     pub fn targets(&mut self, all: impl IntoIterator<Item = Target>) -> Vec<Handle> {
         all.into_iter().map(|target| self.target(target)).collect()
+    }
+
+    /// Targets as an exported text's description has them.
+    pub fn described<'t>(
+        &mut self,
+        all: impl IntoIterator<Item = &'t peelnet_model::inputs::Target>,
+    ) -> Vec<Handle> {
+        self.targets(all.into_iter().map(Target::described))
+    }
+
+    /// What surrounds a network, with the middle of what it may answer in its place.
+    pub fn without_network(&mut self, surroundings: &Surroundings) {
+        self.network = format!(
+            "// The answer without a network.\nfn peelnet_network({}) -> f32 {{\n    return 0.5;\n}}\n",
+            surroundings.parameters
+        );
+        for module in surroundings.modules {
+            let text = crate::shaders::source(module);
+            self.network
+                .push_str(text.expect("modules of the repository"));
+        }
     }
 
     /// A buffer, zero at the start of every frame: so many bytes of each pixel, and of the frame besides.

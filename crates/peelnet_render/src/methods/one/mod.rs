@@ -5,7 +5,7 @@ mod expectations;
 pub mod reference;
 
 use crate::methods::prelude::*;
-use peelnet_core::methods::one::{Design, TILE};
+use peelnet_core::methods::one::Design;
 use peelnet_model::inputs::one_surroundings;
 
 const RANGE: Parameter = Parameter::words(
@@ -66,15 +66,9 @@ pub(super) const DEEP_WIDE: Method = Method {
 
 fn passes(p: &mut Passes<'_>) {
     let design = design(p.on.spec);
+    let surroundings = one_surroundings(design);
     if p.on.recipe.is_none() {
-        p.network.push_str(
-            "// The answer without a network.\n\
-             fn peelnet_network(ahead: PeelnetAhead) -> f32 {\n    return 0.5;\n}\n",
-        );
-        for module in one_surroundings(design).modules {
-            let text = crate::shaders::source(module);
-            p.network.push_str(text.expect("modules of the repository"));
-        }
+        p.without_network(surroundings);
     }
     let is_wide = design == Design::WIDE;
     let is_framed = is_framed(p.on.spec);
@@ -82,33 +76,22 @@ fn passes(p: &mut Passes<'_>) {
         let wide = is_wide.then_some("wide").into_iter();
         wide.chain(is_framed.then_some("frame"))
     };
-    let kept = one_surroundings(design).passes[0].targets.iter();
-    let kept = kept.map(|target| Target::half(target.name, 4, Blend::AddMax));
-    let kept = p.targets(kept);
-    let mut quantiles = None;
-    if !is_framed {
-        let small = |target: Target| target.every(TILE);
-        // Sixteen bins: four channels of 8 bits count as eight bytes of the 32 that a pass may write, two as two.
-        let bins = [
-            ("bins_a", 4),
-            ("bins_b", 4),
-            ("bins_c", 4),
-            ("bins_d", 2),
-            ("bins_e", 2),
-        ];
-        let bins = bins.map(|(name, n)| small(Target::half(name, n, Blend::AddBytes)));
-        let nearest = small(Target::half("nearest", 1, Blend::Max));
-        let tiles = p.targets(bins.into_iter().chain([nearest]));
-        let [columns, rows] = p.on.size.map(|n| u64::from(n.div_ceil(TILE)));
-        let found = p.uncleared("quantiles", 4 * columns * rows);
+    let kept = p.described(surroundings.passes[0].targets);
+    let around = surroundings.around.filter(|_| !is_framed);
+    let quantiles = around.map(|around| {
+        let tiles = around.pass.targets.iter();
+        let tiles = tiles.map(|target| Target::described(target).every(around.every));
+        let tiles = p.targets(tiles);
+        let [columns, rows] = p.on.size.map(|n| u64::from(n.div_ceil(around.every)));
+        let found = p.uncleared(around.name, 4 * columns * rows);
         p.geometry("methods::one::tiles", Needs::OPACITY)
             .features(["tiles"])
             .writes(tiles.iter().copied());
         p.compute("methods::one::quantiles", columns * rows)
             .reads(tiles)
             .writes([found]);
-        quantiles = Some(found);
-    }
+        found
+    });
     p.geometry("methods::one::gather", Needs::COLOR)
         .features(features())
         .reads(quantiles)

@@ -3,8 +3,8 @@
 use super::{design, is_framed};
 use crate::methods::{MethodSpec, Pixel};
 use peelnet_core::{
-    absorbance::{DepthWarp, absorbance},
-    methods::one::{self, Ahead, Around, Quantiles, depth_of, formula},
+    absorbance::DepthWarp,
+    methods::one::{self, Ahead, Around, Quantiles, formula},
     statistics::SumPrecision,
 };
 use peelnet_model::{Model, inputs::NINE_OF_SUMS};
@@ -45,14 +45,7 @@ pub fn transmittances(
     model: Option<&Model>,
 ) -> Option<Vec<f64>> {
     let answer = answer(spec, model).filter(|_| is_framed(spec))?;
-    let place = |&(depth, alpha): &(f32, f32)| (absorbance(alpha), depth_of(warp, depth));
-    let fragments: Vec<_> = fragments.iter().map(place).collect();
-    let half = SumPrecision::Half;
-    Some(one::transmittances(
-        &fragments,
-        design(spec),
-        Around::NONE,
-        half,
-        answer,
-    ))
+    let (around, half) = (Around::NONE, SumPrecision::Half);
+    let all = one::transmittances(fragments, warp, design(spec), around, half, answer);
+    Some(all)
 }

@@ -73,46 +73,14 @@ pub(super) const LARGE: Method = Method {
     )
 };
 
-/// What the statistics pass writes: of each slab its absorbance, its nearest and its farthest fragment and its mean, as far as there is room
-/// in the layout; what is left of a target's channels holds a mean or the farthest of one slab.
-fn statistics(layout: Layout) -> Vec<Target> {
-    use Blend::{Add, Max, MaxAdd};
-    let four = |name, blend| Target::half(name, 4, blend);
-    match layout {
-        Layout::Small => vec![
-            four("absorbances", Add),
-            four("nearest", Max),
-            Target::half("firsts", 2, Add),
-        ],
-        Layout::Medium => vec![
-            four("absorbances", Add),
-            four("nearest", MaxAdd),
-            four("farthest", MaxAdd),
-        ],
-        Layout::Large => vec![
-            four("absorbances", Add),
-            four("nearest", Max),
-            four("farthest", Max),
-            four("firsts", Add),
-        ],
-    }
-}
-
 fn passes(p: &mut Passes<'_>) {
     let layout = if let Some(recipe) = p.on.recipe {
         let inputs = recipe.inputs.downcast::<SlabInputs>();
         let layout = inputs.and_then(|inputs| inputs.design.layout());
         layout.expect("the recipe of a method of slabs keeps what a layout holds")
     } else {
-        p.network.push_str(
-            "// The guess without a network: the middle between the bounds.\n\
-             fn peelnet_network(between: PeelnetBetween) -> f32 {\n    return 0.5;\n}\n",
-        );
         let layout = plain_layout(p.on.spec);
-        for module in slab_surroundings(layout).modules {
-            let text = crate::shaders::source(module);
-            p.network.push_str(text.expect("modules of the repository"));
-        }
+        p.without_network(slab_surroundings(layout));
         layout
     };
     let [framed, boxes] = ["frame", "boxes"].map(|word| RANGE.word(p.on.spec) == word);
@@ -126,11 +94,17 @@ fn passes(p: &mut Passes<'_>) {
     };
     let features = || own_layout.into_iter().chain(source);
     let sums = p.target(SUMS);
-    let kept = p.targets(statistics(layout));
-    let bins = ["bins_front", "bins_back"].map(|name| Target::half(name, 4, Blend::AddBytes));
-    let bins = bins.into_iter().filter(|_| source.is_none());
-    let range = (!framed).then_some(Target::half("range", 2, Blend::MaxBytes));
-    let found = p.targets(bins.chain(range));
+    let [of_range, of_slabs, _] = slab_surroundings(layout).passes else {
+        unreachable!("a pass of the range, one of the statistics and one of the weights")
+    };
+    let kept = p.described(of_slabs.targets);
+    // Over boxes the range alone, which is the last; over the frame nothing.
+    let skipped = match source {
+        None => 0,
+        Some("boxes") => of_range.targets.len() - 1,
+        Some(_) => of_range.targets.len(),
+    };
+    let found = p.described(&of_range.targets[skipped..]);
     if boxes {
         let pass = p.geometry("methods::slabs::boxes", Needs::DEPTH).boxes();
         pass.label("range").writes(found.iter().copied());
