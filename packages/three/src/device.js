@@ -8,7 +8,7 @@ const bytesOf = ( pass ) => pass.targets.reduce( ( sum, target ) => sum + FORMAT
 const blendOf = ( target ) => `${ target.color } ${ target.alpha }`;
 
 /**
- * The passes as a device draws them: one whose targets it cannot blend, or hold, at once is drawn in parts, one for each blend.
+ * The passes as a device draws them: on WebGL 2 without OES_draw_buffers_indexed in parts, one for each blend.
  *
  * @param {import('three/webgpu').Renderer} renderer
  * @param {object} model
@@ -17,15 +17,15 @@ const blendOf = ( target ) => `${ target.color } ${ target.alpha }`;
  */
 export function drawnPasses( { backend }, model, range ) {
 
-	const isWhole = backend.isWebGPUBackend === true
-		? ( pass ) => bytesOf( pass ) <= backend.device.limits.maxColorAttachmentBytesPerSample
-		: () => Boolean( backend.drawBuffersIndexedExt );
+	const passes = passesOf( model.description, range );
 
-	return passesOf( model.description, range ).flatMap( ( pass ) => {
+	if ( backend.isWebGPUBackend === true || backend.drawBuffersIndexedExt ) return passes;
+
+	return passes.flatMap( ( pass ) => {
 
 		const blends = [ ...new Set( pass.targets.map( blendOf ) ) ];
 
-		return isWhole( pass ) ? [ pass ] : blends.map( ( blend ) => ( { ...pass, targets: pass.targets.filter( ( target ) => blendOf( target ) === blend ) } ) );
+		return blends.map( ( blend ) => ( { ...pass, targets: pass.targets.filter( ( target ) => blendOf( target ) === blend ) } ) );
 
 	} );
 

@@ -74,21 +74,19 @@ export async function bad( backend ) {
 
 }
 
-/** Passes that are drawn in parts, because the device cannot blend or hold their targets at once, against whole ones. */
+/** WebGL 2: passes that are drawn in parts, because the device cannot blend their targets at once, against whole ones. */
 export async function parts( backend ) {
 
-	const renderer = await makeRenderer( backend, backend === 'webgpu' ? { requiredLimits: { maxColorAttachmentBytesPerSample: 40 } } : {} );
-	const { backend: device } = renderer;
+	const renderer = await makeRenderer( backend );
 	const scene = scenes.fifty();
 	const camera = scenes.perspective( aspect );
-	const lack = backend === 'webgpu' ? [ device.device, 'limits', { maxColorAttachments: 8, maxColorAttachmentBytesPerSample: 32 } ] : [ device, 'drawBuffersIndexedExt', null ];
 	const result = {};
 
 	for ( const name of [ 'medium', 'one' ] ) {
 
 		const draw = async () => drawn( renderer, scene, camera, { model: await modelOf( name ) } );
 		const whole = await draw();
-		const inParts = await replaced( ...lack, draw );
+		const inParts = await replaced( renderer.backend, 'drawBuffersIndexedExt', null, draw );
 
 		result[ name ] = { ...errors( inParts.image, whole.image ), passes: [ whole, inParts ].map( ( { node } ) => node._stages.passes.length ), problems: [ ...whole.problems, ...inParts.problems ] };
 

@@ -125,9 +125,9 @@ impl Reader<'_, '_> {
                 self.missing(what, &semantic.to_string(), "");
             }
         }
-        let corners = primitive.indices().map(|a| a.count()).or(vertices);
+        let drawn = primitive.indices().map(|a| a.count()).or(vertices);
         let is_list = primitive.mode() == Mode::Triangles;
-        if corners.is_some_and(|n| n < 3 || is_list && !n.is_multiple_of(3)) {
+        if drawn.is_some_and(|n| n < 3 || is_list && !n.is_multiple_of(3)) {
             self.missing("vertices beyond the last triangle (", place, ")");
         }
     }
