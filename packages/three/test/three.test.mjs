@@ -234,7 +234,7 @@ for ( const backend of [ 'webgpu', 'webgl2' ] ) {
 			const expected = {
 				none: /no peelnet export/, 'no model': /no peelnet export/, version: /format version 2.*reads version 1/, recipe: /reads "front"/, format: /unknown format, blend or clear/,
 				blend: /unknown format, blend or clear/, name: /unknown format, blend or clear/, text: /no WGSL text/, range: /neither "pixel" nor "frame"/, multisampling: /Multisampling is not supported/, depth: /needs a depth buffer/,
-				...( backend === 'webgpu' ? { compatibility: /compatibility mode/, bytes: /16 bytes a sample.*has 4/ } : { glsl: /no GLSL text/ } )
+				...( backend === 'webgpu' ? { compatibility: /compatibility mode/, bytes: /24 bytes a sample.*has 16/ } : { glsl: /no GLSL text/ } )
 			};
 
 			for ( const [ key, message ] of Object.entries( expected ) ) {

@@ -66,7 +66,7 @@ export async function bad( backend ) {
 	if ( backend === 'webgpu' ) {
 
 		await lacking( 'compatibility', device, 'compatibilityMode', true );
-		await lacking( 'bytes', device.device, 'limits', { maxColorAttachments: 8, maxColorAttachmentBytesPerSample: 4 } );
+		await lacking( 'bytes', device.device, 'limits', { maxColorAttachments: 8, maxColorAttachmentBytesPerSample: 16 } );
 
 	}
 
