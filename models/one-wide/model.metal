@@ -97,6 +97,11 @@ struct PeelnetShares {
     metal::float3 front;
     metal::float3 back;
 };
+struct PeelnetRest {
+    PeelnetNearest nearest;
+    metal::float3x4 front;
+    metal::float3x4 back;
+};
 constant float PEELNET_BIN_LEVELS = 64.0;
 constant float PEELNET_TILE_DEPTHS = 240.0;
 constant float PEELNET_TILE_OPACITIES = 256.0;
@@ -260,8 +265,8 @@ metal::float4 peelnet_seen(
     float before_1
 ) {
     metal::float4 _e3 = peelnet_seen_behind(before_1, bins_2);
-    metal::float4 seen_2 = metal::float4(metal::exp(before_1 * -3.984375), _e3.xyz) - _e3;
-    return (seen_2 * metal::max(bins_2 - taken, metal::float4(0.0))) / metal::max(bins_2, metal::float4(0.003921569));
+    metal::float4 seen_4 = metal::float4(metal::exp(before_1 * -3.984375), _e3.xyz) - _e3;
+    return (seen_4 * metal::max(bins_2 - taken, metal::float4(0.0))) / metal::max(bins_2, metal::float4(0.003921569));
 }
 
 metal::float4x4 peelnet_tile_seen(
@@ -440,11 +445,51 @@ float peelnet_part(
     return metal::exp((-2.0 * ahead_1) * _e22);
 }
 
+metal::float3 peelnet_seen_of(
+    metal::float3 b_3,
+    float before_5
+) {
+    float _e3 = peelnet_inside(b_3.x);
+    float _e8 = peelnet_inside(b_3.y);
+    float _e15 = peelnet_inside(b_3.z);
+    metal::float3 ahead_2 = metal::float3(before_5 + _e3, (before_5 + b_3.x) + _e8, ((before_5 + b_3.x) + b_3.y) + _e15);
+    return b_3 * metal::exp(-(ahead_2));
+}
+
+metal::float4 peelnet_until(
+    metal::float4 depths,
+    metal::float3 seen_1,
+    metal::float3 begins,
+    metal::float3 ends,
+    metal::float4 quantiles_2
+) {
+    metal::float3 scale_1 = metal::float3(1.0) / (ends - begins);
+    float _e10 = peelnet_place_among(depths.x, quantiles_2);
+    float _e21 = peelnet_place_among(depths.y, quantiles_2);
+    float _e32 = peelnet_place_among(depths.z, quantiles_2);
+    float _e43 = peelnet_place_among(depths.w, quantiles_2);
+    return metal::float4(metal::dot(seen_1, metal::clamp((metal::float3(_e10) - begins) * scale_1, metal::float3(0.0), metal::float3(1.0))), metal::dot(seen_1, metal::clamp((metal::float3(_e21) - begins) * scale_1, metal::float3(0.0), metal::float3(1.0))), metal::dot(seen_1, metal::clamp((metal::float3(_e32) - begins) * scale_1, metal::float3(0.0), metal::float3(1.0))), metal::dot(seen_1, metal::clamp((metal::float3(_e43) - begins) * scale_1, metal::float3(0.0), metal::float3(1.0))));
+}
+
+metal::float4x4 peelnet_spread(
+    metal::float3 seen_2,
+    metal::float3 begins_1,
+    metal::float3 ends_1,
+    metal::float4 quantiles_3
+) {
+    metal::float4 depths_1 = metal::float4(0.0625, 0.125, 0.1875, 0.25);
+    metal::float4 _e9 = peelnet_until(depths_1, seen_2, begins_1, ends_1, quantiles_3);
+    metal::float4 _e13 = peelnet_until(depths_1 + metal::float4(0.25), seen_2, begins_1, ends_1, quantiles_3);
+    metal::float4 _e17 = peelnet_until(depths_1 + metal::float4(0.5), seen_2, begins_1, ends_1, quantiles_3);
+    metal::float4 _e21 = peelnet_until(depths_1 + metal::float4(0.75), seen_2, begins_1, ends_1, quantiles_3);
+    return metal::float4x4(_e9 - metal::float4(0.0, _e9.xyz), _e13 - metal::float4(_e9.w, _e13.xyz), _e17 - metal::float4(_e13.w, _e17.xyz), _e21 - metal::float4(_e17.w, _e21.xyz));
+}
+
 metal::float4 peelnet_over_black(
     PeelnetNearest nearest_3,
-    metal::float4 seen_1
+    metal::float4 seen_3
 ) {
-    metal::float3 rest = (seen_1.w > 0.0) ? (seen_1.xyz / metal::float3(metal::max(seen_1.w, 0.000000000000000000000000000000000000011754944))) : nearest_3.color;
+    metal::float3 rest = (seen_3.w > 0.0) ? (seen_3.xyz / metal::float3(metal::max(seen_3.w, 0.000000000000000000000000000000000000011754944))) : nearest_3.color;
     return metal::float4((nearest_3.alpha * nearest_3.color) + (nearest_3.left * rest), nearest_3.coverage);
 }
 
@@ -456,20 +501,20 @@ PeelnetShares peelnet_shares(
     metal::float3 front_1 = metal::exp((-0.5 * off_front) * off_front);
     metal::float3 back_2 = metal::exp((-0.5 * off_back) * off_back);
     metal::float3 all_1 = front_1 + back_2;
-    float scale_1 = 1.0 / ((all_1.x + all_1.y) + all_1.z);
-    return PeelnetShares {front_1 * scale_1, back_2 * scale_1};
+    float scale_2 = 1.0 / ((all_1.x + all_1.y) + all_1.z);
+    return PeelnetShares {front_1 * scale_2, back_2 * scale_2};
 }
 
 PeelnetStatistics peelnet_statistics(
     float alpha_3,
     metal::float3 rgb_2,
     float zeta_3,
-    metal::float4 quantiles_2,
+    metal::float4 quantiles_4,
     float noise_2
 ) {
     float _e5 = peelnet_absorbance(alpha_3);
     float depth_4 = (0.5 * zeta_3) + 0.5;
-    float _e10 = peelnet_place_among(depth_4, quantiles_2);
+    float _e10 = peelnet_place_among(depth_4, quantiles_4);
     metal::float4 _e11 = peelnet_record(_e5, rgb_2, depth_4, _e10, noise_2);
     PeelnetShares _e12 = peelnet_shares(_e10);
     metal::float3 front_2 = _e5 * _e12.front;
@@ -477,7 +522,7 @@ PeelnetStatistics peelnet_statistics(
     return PeelnetStatistics {metal::float4(rgb_2 * front_2.x, _e11.x), metal::float4(rgb_2 * front_2.y, _e11.y), metal::float4(rgb_2 * front_2.z, _e11.z), metal::float4(rgb_2 * back_3.x, -65504.0), metal::float4(rgb_2 * back_3.y, -65504.0), metal::float4(rgb_2 * back_3.z, -65504.0), metal::float4(front_2, _e11.w), metal::float4(back_3, -65504.0)};
 }
 
-metal::float4 peelnet_pixel(
+PeelnetRest peelnet_rest(
     metal::float4 sum_a,
     metal::float4 sum_b,
     metal::float4 sum_c,
@@ -486,7 +531,7 @@ metal::float4 peelnet_pixel(
     metal::float4 sum_f,
     metal::float4 absorbances,
     metal::float4 absorbances_back,
-    metal::float4 quantiles_3,
+    metal::float4 quantiles_5,
     float noise_3
 ) {
     metal::float3 front_3 = metal::min(absorbances.xyz, metal::float3(65504.0));
@@ -494,31 +539,18 @@ metal::float4 peelnet_pixel(
     metal::float3 both = front_3 + back_4;
     metal::float3 colors = ((((sum_a.xyz + sum_b.xyz) + sum_c.xyz) + sum_d.xyz) + sum_e.xyz) + sum_f.xyz;
     metal::float4 all_2 = metal::float4(colors, (both.x + both.y) + both.z);
-    PeelnetNearest _e41 = peelnet_nearest(metal::float4(sum_a.w, sum_b.w, sum_c.w, absorbances.w), all_2, quantiles_3, noise_3);
+    PeelnetNearest _e41 = peelnet_nearest(metal::float4(sum_a.w, sum_b.w, sum_c.w, absorbances.w), all_2, quantiles_5, noise_3);
     PeelnetShares _e43 = peelnet_shares(_e41.place);
     metal::float4 _e48 = peelnet_behind(sum_a.xyz, front_3.x, _e43.front.x, _e41);
     metal::float4 _e53 = peelnet_behind(sum_b.xyz, front_3.y, _e43.front.y, _e41);
     metal::float4 _e58 = peelnet_behind(sum_c.xyz, front_3.z, _e43.front.z, _e41);
-    metal::float4 _e63 = peelnet_behind(sum_d.xyz, back_4.x, _e43.back.x, _e41);
-    metal::float4 _e68 = peelnet_behind(sum_e.xyz, back_4.y, _e43.back.y, _e41);
-    metal::float4 _e73 = peelnet_behind(sum_f.xyz, back_4.z, _e43.back.z, _e41);
-    float to_c = _e48.w + _e53.w;
-    float to_d = to_c + _e58.w;
-    float to_e = to_d + _e63.w;
-    float to_f = to_e + _e68.w;
-    float total_1 = to_f + _e73.w;
-    float _e90 = peelnet_part(_e48.w, 0.0, 0.0, _e53.w, total_1, 0.0, _e41);
-    float _e97 = peelnet_part(_e53.w, _e48.w, _e48.w, _e58.w, total_1, 0.2, _e41);
-    float _e104 = peelnet_part(_e58.w, to_c, _e53.w, _e63.w, total_1, 0.4, _e41);
-    float _e111 = peelnet_part(_e63.w, to_d, _e58.w, _e68.w, total_1, 0.6, _e41);
-    float _e118 = peelnet_part(_e68.w, to_e, _e63.w, _e73.w, total_1, 0.8, _e41);
-    float _e125 = peelnet_part(_e73.w, to_f, _e68.w, 0.0, total_1, 1.0, _e41);
-    metal::float4 seen_3 = (((((_e48 * _e90) + (_e53 * _e97)) + (_e58 * _e104)) + (_e63 * _e111)) + (_e68 * _e118)) + (_e73 * _e125);
-    metal::float4 _e128 = peelnet_over_black(_e41, seen_3);
-    return _e128;
+    metal::float4 _e64 = peelnet_behind(sum_d.xyz, back_4.x, _e43.back.x, _e41);
+    metal::float4 _e69 = peelnet_behind(sum_e.xyz, back_4.y, _e43.back.y, _e41);
+    metal::float4 _e74 = peelnet_behind(sum_f.xyz, back_4.z, _e43.back.z, _e41);
+    return PeelnetRest {_e41, metal::float3x4(_e48, _e53, _e58), metal::float3x4(_e64, _e69, _e74)};
 }
 
-metal::float4 peelnet_resolve(
+metal::float4 peelnet_pixel(
     metal::float4 sum_a_1,
     metal::float4 sum_b_1,
     metal::float4 sum_c_1,
@@ -527,11 +559,67 @@ metal::float4 peelnet_resolve(
     metal::float4 sum_f_1,
     metal::float4 absorbances_1,
     metal::float4 absorbances_back_1,
-    metal::float4 quantiles_4,
-    float noise_4,
+    metal::float4 quantiles_6,
+    float noise_4
+) {
+    PeelnetRest _e10 = peelnet_rest(sum_a_1, sum_b_1, sum_c_1, sum_d_1, sum_e_1, sum_f_1, absorbances_1, absorbances_back_1, quantiles_6, noise_4);
+    metal::float3 front_4 = metal::float3(_e10.front[0].w, _e10.front[1].w, _e10.front[2].w);
+    metal::float3 back_5 = metal::float3(_e10.back[0].w, _e10.back[1].w, _e10.back[2].w);
+    float to_c = front_4.x + front_4.y;
+    float to_d = to_c + front_4.z;
+    float to_e = to_d + back_5.x;
+    float to_f = to_e + back_5.y;
+    float total_1 = to_f + back_5.z;
+    float _e50 = peelnet_part(front_4.x, 0.0, 0.0, front_4.y, total_1, 0.0, _e10.nearest);
+    float _e60 = peelnet_part(front_4.y, front_4.x, front_4.x, front_4.z, total_1, 0.2, _e10.nearest);
+    float _e70 = peelnet_part(front_4.z, to_c, front_4.y, back_5.x, total_1, 0.4, _e10.nearest);
+    float _e80 = peelnet_part(back_5.x, to_d, front_4.z, back_5.y, total_1, 0.6, _e10.nearest);
+    float _e90 = peelnet_part(back_5.y, to_e, back_5.x, back_5.z, total_1, 0.8, _e10.nearest);
+    float _e100 = peelnet_part(back_5.z, to_f, back_5.y, 0.0, total_1, 1.0, _e10.nearest);
+    metal::float4 seen_5 = (((((_e10.front[0] * _e50) + (_e10.front[1] * _e60)) + (_e10.front[2] * _e70)) + (_e10.back[0] * _e80)) + (_e10.back[1] * _e90)) + (_e10.back[2] * _e100);
+    metal::float4 _e104 = peelnet_over_black(_e10.nearest, seen_5);
+    return _e104;
+}
+
+metal::float4x4 peelnet_last_seen(
+    metal::float4 sum_a_2,
+    metal::float4 sum_b_2,
+    metal::float4 sum_c_2,
+    metal::float4 sum_d_2,
+    metal::float4 sum_e_2,
+    metal::float4 sum_f_2,
+    metal::float4 absorbances_2,
+    metal::float4 absorbances_back_2,
+    metal::float4 quantiles_7,
+    float noise_5
+) {
+    PeelnetRest _e10 = peelnet_rest(sum_a_2, sum_b_2, sum_c_2, sum_d_2, sum_e_2, sum_f_2, absorbances_2, absorbances_back_2, quantiles_7, noise_5);
+    metal::float3 front_5 = metal::float3(_e10.front[0].w, _e10.front[1].w, _e10.front[2].w);
+    metal::float3 back_6 = metal::float3(_e10.back[0].w, _e10.back[1].w, _e10.back[2].w);
+    metal::float3 _e32 = peelnet_seen_of(front_5, 0.0);
+    metal::float3 _e36 = peelnet_seen_of(back_6, metal::dot(front_5, metal::float3(1.0)));
+    float scale_3 = _e10.nearest.left / metal::max(metal::dot(_e32 + _e36, metal::float3(1.0)), 0.000000000000000000000000000000000000011754944);
+    metal::float3 begins_2 = metal::float3(0.0, 0.25, 0.408);
+    metal::float3 begins_back = metal::float3(0.576, 0.702, 0.848);
+    metal::float4x4 _e59 = peelnet_spread(_e32 * scale_3, begins_2, metal::float3(0.25, 0.408, 0.576), quantiles_7);
+    metal::float4x4 _e65 = peelnet_spread(_e36 * scale_3, begins_back, metal::float3(0.702, 0.848, 1.0), quantiles_7);
+    return _e59 + _e65;
+}
+
+metal::float4 peelnet_resolve(
+    metal::float4 sum_a_3,
+    metal::float4 sum_b_3,
+    metal::float4 sum_c_3,
+    metal::float4 sum_d_3,
+    metal::float4 sum_e_3,
+    metal::float4 sum_f_3,
+    metal::float4 absorbances_3,
+    metal::float4 absorbances_back_3,
+    metal::float4 quantiles_8,
+    float noise_6,
     metal::float3 background
 ) {
-    metal::float4 _e11 = peelnet_pixel(sum_a_1, sum_b_1, sum_c_1, sum_d_1, sum_e_1, sum_f_1, absorbances_1, absorbances_back_1, quantiles_4, noise_4);
+    metal::float4 _e11 = peelnet_pixel(sum_a_3, sum_b_3, sum_c_3, sum_d_3, sum_e_3, sum_f_3, absorbances_3, absorbances_back_3, quantiles_8, noise_6);
     return metal::float4(_e11.xyz + ((1.0 - _e11.w) * background), _e11.w);
 }
 

@@ -79,6 +79,12 @@ struct PeelnetStatistics {
     vec4 sum_c;
     vec4 absorbances;
 };
+struct PeelnetRest {
+    PeelnetNearest nearest;
+    vec4 first;
+    vec4 second;
+    vec4 third;
+};
 const float PEELNET_BIN_LEVELS = 64.0;
 const float PEELNET_TILE_DEPTHS = 240.0;
 const float PEELNET_TILE_OPACITIES = 256.0;
@@ -190,8 +196,8 @@ vec4 peelnet_before(mat4x4 bins_1) {
 
 vec4 peelnet_seen(vec4 bins_2, vec4 taken, float before_1) {
     vec4 _e3 = peelnet_seen_behind(before_1, bins_2);
-    vec4 seen_2 = (vec4(exp((before_1 * -3.984375)), _e3.xyz) - _e3);
-    return ((seen_2 * max((bins_2 - taken), vec4(0.0))) / max(bins_2, vec4(0.003921569)));
+    vec4 seen_4 = (vec4(exp((before_1 * -3.984375)), _e3.xyz) - _e3);
+    return ((seen_4 * max((bins_2 - taken), vec4(0.0))) / max(bins_2, vec4(0.003921569)));
 }
 
 mat4x4 peelnet_tile_seen(mat4x4 bins_3, float nearest) {
@@ -315,8 +321,34 @@ float peelnet_part(float own, float before_4, float previous, float next, float 
     return exp(((-2.0 * ahead_1) * _e22));
 }
 
-vec4 peelnet_over_black(PeelnetNearest nearest_3, vec4 seen_1) {
-    vec3 rest = ((seen_1.w > 0.0) ? (seen_1.xyz / vec3(max(seen_1.w, 1.1754944e-38))) : nearest_3.color);
+vec3 peelnet_seen_of(vec3 b_3, float before_5) {
+    float _e3 = peelnet_inside(b_3.x);
+    float _e8 = peelnet_inside(b_3.y);
+    float _e15 = peelnet_inside(b_3.z);
+    vec3 ahead_2 = vec3((before_5 + _e3), ((before_5 + b_3.x) + _e8), (((before_5 + b_3.x) + b_3.y) + _e15));
+    return (b_3 * exp(-(ahead_2)));
+}
+
+vec4 peelnet_until(vec4 depths, vec3 seen_1, vec3 begins, vec3 ends, vec4 quantiles_2) {
+    vec3 scale_1 = (vec3(1.0) / (ends - begins));
+    float _e10 = peelnet_place_among(depths.x, quantiles_2);
+    float _e21 = peelnet_place_among(depths.y, quantiles_2);
+    float _e32 = peelnet_place_among(depths.z, quantiles_2);
+    float _e43 = peelnet_place_among(depths.w, quantiles_2);
+    return vec4(dot(seen_1, clamp(((vec3(_e10) - begins) * scale_1), vec3(0.0), vec3(1.0))), dot(seen_1, clamp(((vec3(_e21) - begins) * scale_1), vec3(0.0), vec3(1.0))), dot(seen_1, clamp(((vec3(_e32) - begins) * scale_1), vec3(0.0), vec3(1.0))), dot(seen_1, clamp(((vec3(_e43) - begins) * scale_1), vec3(0.0), vec3(1.0))));
+}
+
+mat4x4 peelnet_spread(vec3 seen_2, vec3 begins_1, vec3 ends_1, vec4 quantiles_3) {
+    vec4 depths_1 = vec4(0.0625, 0.125, 0.1875, 0.25);
+    vec4 _e9 = peelnet_until(depths_1, seen_2, begins_1, ends_1, quantiles_3);
+    vec4 _e13 = peelnet_until((depths_1 + vec4(0.25)), seen_2, begins_1, ends_1, quantiles_3);
+    vec4 _e17 = peelnet_until((depths_1 + vec4(0.5)), seen_2, begins_1, ends_1, quantiles_3);
+    vec4 _e21 = peelnet_until((depths_1 + vec4(0.75)), seen_2, begins_1, ends_1, quantiles_3);
+    return mat4x4((_e9 - vec4(0.0, _e9.xyz)), (_e13 - vec4(_e9.w, _e13.xyz)), (_e17 - vec4(_e13.w, _e17.xyz)), (_e21 - vec4(_e17.w, _e21.xyz)));
+}
+
+vec4 peelnet_over_black(PeelnetNearest nearest_3, vec4 seen_3) {
+    vec3 rest = ((seen_3.w > 0.0) ? (seen_3.xyz / vec3(max(seen_3.w, 1.1754944e-38))) : nearest_3.color);
     return vec4(((nearest_3.alpha * nearest_3.color) + (nearest_3.left * rest)), nearest_3.coverage);
 }
 
@@ -326,36 +358,51 @@ vec3 peelnet_shares(float place_2) {
     return (bumps * (1.0 / ((bumps.x + bumps.y) + bumps.z)));
 }
 
-PeelnetStatistics peelnet_statistics(float alpha_3, vec3 rgb_2, float zeta_3, vec4 quantiles_2, float noise_2) {
+PeelnetStatistics peelnet_statistics(float alpha_3, vec3 rgb_2, float zeta_3, vec4 quantiles_4, float noise_2) {
     float _e5 = peelnet_absorbance(alpha_3);
     float depth_4 = ((0.5 * zeta_3) + 0.5);
-    float _e10 = peelnet_place_among(depth_4, quantiles_2);
+    float _e10 = peelnet_place_among(depth_4, quantiles_4);
     vec4 _e11 = peelnet_record(_e5, rgb_2, depth_4, _e10, noise_2);
     vec3 _e12 = peelnet_shares(_e10);
     vec3 shares_3 = (_e5 * _e12);
     return PeelnetStatistics(vec4((rgb_2 * shares_3.x), _e11.x), vec4((rgb_2 * shares_3.y), _e11.y), vec4((rgb_2 * shares_3.z), _e11.z), vec4(shares_3, _e11.w));
 }
 
-vec4 peelnet_pixel(vec4 sum_a, vec4 sum_b, vec4 sum_c, vec4 absorbances, vec4 quantiles_3, float noise_3) {
-    vec3 b_3 = min(absorbances.xyz, vec3(65504.0));
-    vec4 all_1 = vec4(((sum_a.xyz + sum_b.xyz) + sum_c.xyz), ((b_3.x + b_3.y) + b_3.z));
-    PeelnetNearest _e26 = peelnet_nearest(vec4(sum_a.w, sum_b.w, sum_c.w, absorbances.w), all_1, quantiles_3, noise_3);
+PeelnetRest peelnet_rest(vec4 sum_a, vec4 sum_b, vec4 sum_c, vec4 absorbances, vec4 quantiles_5, float noise_3) {
+    vec3 b_4 = min(absorbances.xyz, vec3(65504.0));
+    vec4 all_1 = vec4(((sum_a.xyz + sum_b.xyz) + sum_c.xyz), ((b_4.x + b_4.y) + b_4.z));
+    PeelnetNearest _e26 = peelnet_nearest(vec4(sum_a.w, sum_b.w, sum_c.w, absorbances.w), all_1, quantiles_5, noise_3);
     vec3 _e28 = peelnet_shares(_e26.place);
-    vec4 _e32 = peelnet_behind(sum_a.xyz, b_3.x, _e28.x, _e26);
-    vec4 _e36 = peelnet_behind(sum_b.xyz, b_3.y, _e28.y, _e26);
-    vec4 _e40 = peelnet_behind(sum_c.xyz, b_3.z, _e28.z, _e26);
-    float two_2 = (_e32.w + _e36.w);
-    float total_1 = (two_2 + _e40.w);
-    float _e51 = peelnet_part(_e32.w, 0.0, 0.0, _e36.w, total_1, 0.0, _e26);
-    float _e58 = peelnet_part(_e36.w, _e32.w, _e32.w, _e40.w, total_1, 0.5, _e26);
-    float _e65 = peelnet_part(_e40.w, two_2, _e36.w, 0.0, total_1, 1.0, _e26);
-    vec4 seen_3 = (((_e32 * _e51) + (_e36 * _e58)) + (_e40 * _e65));
-    vec4 _e68 = peelnet_over_black(_e26, seen_3);
-    return _e68;
+    vec4 _e32 = peelnet_behind(sum_a.xyz, b_4.x, _e28.x, _e26);
+    vec4 _e36 = peelnet_behind(sum_b.xyz, b_4.y, _e28.y, _e26);
+    vec4 _e40 = peelnet_behind(sum_c.xyz, b_4.z, _e28.z, _e26);
+    return PeelnetRest(_e26, _e32, _e36, _e40);
 }
 
-vec4 peelnet_resolve(vec4 sum_a_1, vec4 sum_b_1, vec4 sum_c_1, vec4 absorbances_1, vec4 quantiles_4, float noise_4, vec3 background) {
-    vec4 _e7 = peelnet_pixel(sum_a_1, sum_b_1, sum_c_1, absorbances_1, quantiles_4, noise_4);
+vec4 peelnet_pixel(vec4 sum_a_1, vec4 sum_b_1, vec4 sum_c_1, vec4 absorbances_1, vec4 quantiles_6, float noise_4) {
+    PeelnetRest _e6 = peelnet_rest(sum_a_1, sum_b_1, sum_c_1, absorbances_1, quantiles_6, noise_4);
+    float two_2 = (_e6.first.w + _e6.second.w);
+    float total_1 = (two_2 + _e6.third.w);
+    float _e24 = peelnet_part(_e6.first.w, 0.0, 0.0, _e6.second.w, total_1, 0.0, _e6.nearest);
+    float _e37 = peelnet_part(_e6.second.w, _e6.first.w, _e6.first.w, _e6.third.w, total_1, 0.5, _e6.nearest);
+    float _e48 = peelnet_part(_e6.third.w, two_2, _e6.second.w, 0.0, total_1, 1.0, _e6.nearest);
+    vec4 seen_5 = (((_e6.first * _e24) + (_e6.second * _e37)) + (_e6.third * _e48));
+    vec4 _e52 = peelnet_over_black(_e6.nearest, seen_5);
+    return _e52;
+}
+
+mat4x4 peelnet_last_seen(vec4 sum_a_2, vec4 sum_b_2, vec4 sum_c_2, vec4 absorbances_2, vec4 quantiles_7, float noise_5) {
+    PeelnetRest _e6 = peelnet_rest(sum_a_2, sum_b_2, sum_c_2, absorbances_2, quantiles_7, noise_5);
+    vec3 b_5 = vec3(_e6.first.w, _e6.second.w, _e6.third.w);
+    vec3 _e15 = peelnet_seen_of(b_5, 0.0);
+    float scale_2 = (_e6.nearest.left / max(dot(_e15, vec3(1.0)), 1.1754944e-38));
+    vec3 begins_2 = vec3(0.0, 0.345, 0.738);
+    mat4x4 _e33 = peelnet_spread((_e15 * scale_2), begins_2, vec3(0.345, 0.738, 1.0), quantiles_7);
+    return _e33;
+}
+
+vec4 peelnet_resolve(vec4 sum_a_3, vec4 sum_b_3, vec4 sum_c_3, vec4 absorbances_3, vec4 quantiles_8, float noise_6, vec3 background) {
+    vec4 _e7 = peelnet_pixel(sum_a_3, sum_b_3, sum_c_3, absorbances_3, quantiles_8, noise_6);
     return vec4((_e7.xyz + ((1.0 - _e7.w) * background)), _e7.w);
 }
 

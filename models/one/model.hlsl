@@ -83,6 +83,13 @@ struct PeelnetStatistics {
     float4 absorbances;
 };
 
+struct PeelnetRest {
+    PeelnetNearest nearest;
+    float4 first;
+    float4 second;
+    float4 third;
+};
+
 static const float PEELNET_BIN_LEVELS = 64.0;
 static const float PEELNET_TILE_DEPTHS = 240.0;
 static const float PEELNET_TILE_OPACITIES = 256.0;
@@ -224,8 +231,8 @@ float4 peelnet_before(float4x4 bins_1)
 float4 peelnet_seen(float4 bins_2, float4 taken, float before_1)
 {
     const float4 _e3 = peelnet_seen_behind(before_1, bins_2);
-    float4 seen_2 = (float4(exp((before_1 * -3.984375)), _e3.xyz) - _e3);
-    return ((seen_2 * max((bins_2 - taken), (0.0).xxxx)) / max(bins_2, (0.003921569).xxxx));
+    float4 seen_4 = (float4(exp((before_1 * -3.984375)), _e3.xyz) - _e3);
+    return ((seen_4 * max((bins_2 - taken), (0.0).xxxx)) / max(bins_2, (0.003921569).xxxx));
 }
 
 float4x4 peelnet_tile_seen(float4x4 bins_3, float nearest)
@@ -388,9 +395,38 @@ float peelnet_part(float own, float before_4, float previous, float next, float 
     return exp(((-2.0 * ahead_1) * _e22));
 }
 
-float4 peelnet_over_black(PeelnetNearest nearest_3, float4 seen_1)
+float3 peelnet_seen_of(float3 b_3, float before_5)
 {
-    float3 rest = ((seen_1.w > 0.0) ? (seen_1.xyz / (max(seen_1.w, 1.1754944e-38)).xxx) : nearest_3.color);
+    const float _e3 = peelnet_inside(b_3.x);
+    const float _e8 = peelnet_inside(b_3.y);
+    const float _e15 = peelnet_inside(b_3.z);
+    float3 ahead_2 = float3((before_5 + _e3), ((before_5 + b_3.x) + _e8), (((before_5 + b_3.x) + b_3.y) + _e15));
+    return (b_3 * exp(-(ahead_2)));
+}
+
+float4 peelnet_until(float4 depths, float3 seen_1, float3 begins, float3 ends, float4 quantiles_2)
+{
+    float3 scale_1 = ((1.0).xxx / (ends - begins));
+    const float _e10 = peelnet_place_among(depths.x, quantiles_2);
+    const float _e21 = peelnet_place_among(depths.y, quantiles_2);
+    const float _e32 = peelnet_place_among(depths.z, quantiles_2);
+    const float _e43 = peelnet_place_among(depths.w, quantiles_2);
+    return float4(dot(seen_1, clamp((((_e10).xxx - begins) * scale_1), (0.0).xxx, (1.0).xxx)), dot(seen_1, clamp((((_e21).xxx - begins) * scale_1), (0.0).xxx, (1.0).xxx)), dot(seen_1, clamp((((_e32).xxx - begins) * scale_1), (0.0).xxx, (1.0).xxx)), dot(seen_1, clamp((((_e43).xxx - begins) * scale_1), (0.0).xxx, (1.0).xxx)));
+}
+
+float4x4 peelnet_spread(float3 seen_2, float3 begins_1, float3 ends_1, float4 quantiles_3)
+{
+    float4 depths_1 = float4(0.0625, 0.125, 0.1875, 0.25);
+    const float4 _e9 = peelnet_until(depths_1, seen_2, begins_1, ends_1, quantiles_3);
+    const float4 _e13 = peelnet_until((depths_1 + (0.25).xxxx), seen_2, begins_1, ends_1, quantiles_3);
+    const float4 _e17 = peelnet_until((depths_1 + (0.5).xxxx), seen_2, begins_1, ends_1, quantiles_3);
+    const float4 _e21 = peelnet_until((depths_1 + (0.75).xxxx), seen_2, begins_1, ends_1, quantiles_3);
+    return float4x4((_e9 - float4(0.0, _e9.xyz)), (_e13 - float4(_e9.w, _e13.xyz)), (_e17 - float4(_e13.w, _e17.xyz)), (_e21 - float4(_e17.w, _e21.xyz)));
+}
+
+float4 peelnet_over_black(PeelnetNearest nearest_3, float4 seen_3)
+{
+    float3 rest = ((seen_3.w > 0.0) ? (seen_3.xyz / (max(seen_3.w, 1.1754944e-38)).xxx) : nearest_3.color);
     return float4(((nearest_3.alpha * nearest_3.color) + (nearest_3.left * rest)), nearest_3.coverage);
 }
 
@@ -410,11 +446,11 @@ PeelnetStatistics ConstructPeelnetStatistics(float4 arg0, float4 arg1, float4 ar
     return ret;
 }
 
-PeelnetStatistics peelnet_statistics(float alpha_3, float3 rgb_2, float zeta_3, float4 quantiles_2, float noise_2)
+PeelnetStatistics peelnet_statistics(float alpha_3, float3 rgb_2, float zeta_3, float4 quantiles_4, float noise_2)
 {
     const float _e5 = peelnet_absorbance(alpha_3);
     float depth_4 = ((0.5 * zeta_3) + 0.5);
-    const float _e10 = peelnet_place_among(depth_4, quantiles_2);
+    const float _e10 = peelnet_place_among(depth_4, quantiles_4);
     const float4 _e11 = peelnet_record(_e5, rgb_2, depth_4, _e10, noise_2);
     const float3 _e12 = peelnet_shares(_e10);
     float3 shares_3 = (_e5 * _e12);
@@ -422,28 +458,55 @@ PeelnetStatistics peelnet_statistics(float alpha_3, float3 rgb_2, float zeta_3, 
     return peelnetstatistics;
 }
 
-float4 peelnet_pixel(float4 sum_a, float4 sum_b, float4 sum_c, float4 absorbances, float4 quantiles_3, float noise_3)
-{
-    float3 b_3 = min(absorbances.xyz, (65504.0).xxx);
-    float4 all_1 = float4(((sum_a.xyz + sum_b.xyz) + sum_c.xyz), ((b_3.x + b_3.y) + b_3.z));
-    const PeelnetNearest _e26 = peelnet_nearest(float4(sum_a.w, sum_b.w, sum_c.w, absorbances.w), all_1, quantiles_3, noise_3);
-    const float3 _e28 = peelnet_shares(_e26.place);
-    const float4 _e32 = peelnet_behind(sum_a.xyz, b_3.x, _e28.x, _e26);
-    const float4 _e36 = peelnet_behind(sum_b.xyz, b_3.y, _e28.y, _e26);
-    const float4 _e40 = peelnet_behind(sum_c.xyz, b_3.z, _e28.z, _e26);
-    float two_2 = (_e32.w + _e36.w);
-    float total_1 = (two_2 + _e40.w);
-    const float _e51 = peelnet_part(_e32.w, 0.0, 0.0, _e36.w, total_1, 0.0, _e26);
-    const float _e58 = peelnet_part(_e36.w, _e32.w, _e32.w, _e40.w, total_1, 0.5, _e26);
-    const float _e65 = peelnet_part(_e40.w, two_2, _e36.w, 0.0, total_1, 1.0, _e26);
-    float4 seen_3 = (((_e32 * _e51) + (_e36 * _e58)) + (_e40 * _e65));
-    const float4 _e68 = peelnet_over_black(_e26, seen_3);
-    return _e68;
+PeelnetRest ConstructPeelnetRest(PeelnetNearest arg0, float4 arg1, float4 arg2, float4 arg3) {
+    PeelnetRest ret = (PeelnetRest)0;
+    ret.nearest = arg0;
+    ret.first = arg1;
+    ret.second = arg2;
+    ret.third = arg3;
+    return ret;
 }
 
-float4 peelnet_resolve(float4 sum_a_1, float4 sum_b_1, float4 sum_c_1, float4 absorbances_1, float4 quantiles_4, float noise_4, float3 background)
+PeelnetRest peelnet_rest(float4 sum_a, float4 sum_b, float4 sum_c, float4 absorbances, float4 quantiles_5, float noise_3)
 {
-    const float4 _e7 = peelnet_pixel(sum_a_1, sum_b_1, sum_c_1, absorbances_1, quantiles_4, noise_4);
+    float3 b_4 = min(absorbances.xyz, (65504.0).xxx);
+    float4 all_1 = float4(((sum_a.xyz + sum_b.xyz) + sum_c.xyz), ((b_4.x + b_4.y) + b_4.z));
+    const PeelnetNearest _e26 = peelnet_nearest(float4(sum_a.w, sum_b.w, sum_c.w, absorbances.w), all_1, quantiles_5, noise_3);
+    const float3 _e28 = peelnet_shares(_e26.place);
+    const float4 _e32 = peelnet_behind(sum_a.xyz, b_4.x, _e28.x, _e26);
+    const float4 _e36 = peelnet_behind(sum_b.xyz, b_4.y, _e28.y, _e26);
+    const float4 _e40 = peelnet_behind(sum_c.xyz, b_4.z, _e28.z, _e26);
+    const PeelnetRest peelnetrest = ConstructPeelnetRest(_e26, _e32, _e36, _e40);
+    return peelnetrest;
+}
+
+float4 peelnet_pixel(float4 sum_a_1, float4 sum_b_1, float4 sum_c_1, float4 absorbances_1, float4 quantiles_6, float noise_4)
+{
+    const PeelnetRest _e6 = peelnet_rest(sum_a_1, sum_b_1, sum_c_1, absorbances_1, quantiles_6, noise_4);
+    float two_2 = (_e6.first.w + _e6.second.w);
+    float total_1 = (two_2 + _e6.third.w);
+    const float _e24 = peelnet_part(_e6.first.w, 0.0, 0.0, _e6.second.w, total_1, 0.0, _e6.nearest);
+    const float _e37 = peelnet_part(_e6.second.w, _e6.first.w, _e6.first.w, _e6.third.w, total_1, 0.5, _e6.nearest);
+    const float _e48 = peelnet_part(_e6.third.w, two_2, _e6.second.w, 0.0, total_1, 1.0, _e6.nearest);
+    float4 seen_5 = (((_e6.first * _e24) + (_e6.second * _e37)) + (_e6.third * _e48));
+    const float4 _e52 = peelnet_over_black(_e6.nearest, seen_5);
+    return _e52;
+}
+
+float4x4 peelnet_last_seen(float4 sum_a_2, float4 sum_b_2, float4 sum_c_2, float4 absorbances_2, float4 quantiles_7, float noise_5)
+{
+    const PeelnetRest _e6 = peelnet_rest(sum_a_2, sum_b_2, sum_c_2, absorbances_2, quantiles_7, noise_5);
+    float3 b_5 = float3(_e6.first.w, _e6.second.w, _e6.third.w);
+    const float3 _e15 = peelnet_seen_of(b_5, 0.0);
+    float scale_2 = (_e6.nearest.left / max(dot(_e15, (1.0).xxx), 1.1754944e-38));
+    float3 begins_2 = float3(0.0, 0.345, 0.738);
+    const float4x4 _e33 = peelnet_spread((_e15 * scale_2), begins_2, float3(0.345, 0.738, 1.0), quantiles_7);
+    return _e33;
+}
+
+float4 peelnet_resolve(float4 sum_a_3, float4 sum_b_3, float4 sum_c_3, float4 absorbances_3, float4 quantiles_8, float noise_6, float3 background)
+{
+    const float4 _e7 = peelnet_pixel(sum_a_3, sum_b_3, sum_c_3, absorbances_3, quantiles_8, noise_6);
     return float4((_e7.xyz + ((1.0 - _e7.w) * background)), _e7.w);
 }
 

@@ -85,6 +85,12 @@ struct PeelnetStatistics {
     metal::float4 sum_c;
     metal::float4 absorbances;
 };
+struct PeelnetRest {
+    PeelnetNearest nearest;
+    metal::float4 first;
+    metal::float4 second;
+    metal::float4 third;
+};
 constant float PEELNET_BIN_LEVELS = 64.0;
 constant float PEELNET_TILE_DEPTHS = 240.0;
 constant float PEELNET_TILE_OPACITIES = 256.0;
@@ -248,8 +254,8 @@ metal::float4 peelnet_seen(
     float before_1
 ) {
     metal::float4 _e3 = peelnet_seen_behind(before_1, bins_2);
-    metal::float4 seen_2 = metal::float4(metal::exp(before_1 * -3.984375), _e3.xyz) - _e3;
-    return (seen_2 * metal::max(bins_2 - taken, metal::float4(0.0))) / metal::max(bins_2, metal::float4(0.003921569));
+    metal::float4 seen_4 = metal::float4(metal::exp(before_1 * -3.984375), _e3.xyz) - _e3;
+    return (seen_4 * metal::max(bins_2 - taken, metal::float4(0.0))) / metal::max(bins_2, metal::float4(0.003921569));
 }
 
 metal::float4x4 peelnet_tile_seen(
@@ -428,11 +434,51 @@ float peelnet_part(
     return metal::exp((-2.0 * ahead_1) * _e22);
 }
 
+metal::float3 peelnet_seen_of(
+    metal::float3 b_3,
+    float before_5
+) {
+    float _e3 = peelnet_inside(b_3.x);
+    float _e8 = peelnet_inside(b_3.y);
+    float _e15 = peelnet_inside(b_3.z);
+    metal::float3 ahead_2 = metal::float3(before_5 + _e3, (before_5 + b_3.x) + _e8, ((before_5 + b_3.x) + b_3.y) + _e15);
+    return b_3 * metal::exp(-(ahead_2));
+}
+
+metal::float4 peelnet_until(
+    metal::float4 depths,
+    metal::float3 seen_1,
+    metal::float3 begins,
+    metal::float3 ends,
+    metal::float4 quantiles_2
+) {
+    metal::float3 scale_1 = metal::float3(1.0) / (ends - begins);
+    float _e10 = peelnet_place_among(depths.x, quantiles_2);
+    float _e21 = peelnet_place_among(depths.y, quantiles_2);
+    float _e32 = peelnet_place_among(depths.z, quantiles_2);
+    float _e43 = peelnet_place_among(depths.w, quantiles_2);
+    return metal::float4(metal::dot(seen_1, metal::clamp((metal::float3(_e10) - begins) * scale_1, metal::float3(0.0), metal::float3(1.0))), metal::dot(seen_1, metal::clamp((metal::float3(_e21) - begins) * scale_1, metal::float3(0.0), metal::float3(1.0))), metal::dot(seen_1, metal::clamp((metal::float3(_e32) - begins) * scale_1, metal::float3(0.0), metal::float3(1.0))), metal::dot(seen_1, metal::clamp((metal::float3(_e43) - begins) * scale_1, metal::float3(0.0), metal::float3(1.0))));
+}
+
+metal::float4x4 peelnet_spread(
+    metal::float3 seen_2,
+    metal::float3 begins_1,
+    metal::float3 ends_1,
+    metal::float4 quantiles_3
+) {
+    metal::float4 depths_1 = metal::float4(0.0625, 0.125, 0.1875, 0.25);
+    metal::float4 _e9 = peelnet_until(depths_1, seen_2, begins_1, ends_1, quantiles_3);
+    metal::float4 _e13 = peelnet_until(depths_1 + metal::float4(0.25), seen_2, begins_1, ends_1, quantiles_3);
+    metal::float4 _e17 = peelnet_until(depths_1 + metal::float4(0.5), seen_2, begins_1, ends_1, quantiles_3);
+    metal::float4 _e21 = peelnet_until(depths_1 + metal::float4(0.75), seen_2, begins_1, ends_1, quantiles_3);
+    return metal::float4x4(_e9 - metal::float4(0.0, _e9.xyz), _e13 - metal::float4(_e9.w, _e13.xyz), _e17 - metal::float4(_e13.w, _e17.xyz), _e21 - metal::float4(_e17.w, _e21.xyz));
+}
+
 metal::float4 peelnet_over_black(
     PeelnetNearest nearest_3,
-    metal::float4 seen_1
+    metal::float4 seen_3
 ) {
-    metal::float3 rest = (seen_1.w > 0.0) ? (seen_1.xyz / metal::float3(metal::max(seen_1.w, 0.000000000000000000000000000000000000011754944))) : nearest_3.color;
+    metal::float3 rest = (seen_3.w > 0.0) ? (seen_3.xyz / metal::float3(metal::max(seen_3.w, 0.000000000000000000000000000000000000011754944))) : nearest_3.color;
     return metal::float4((nearest_3.alpha * nearest_3.color) + (nearest_3.left * rest), nearest_3.coverage);
 }
 
@@ -448,53 +494,82 @@ PeelnetStatistics peelnet_statistics(
     float alpha_3,
     metal::float3 rgb_2,
     float zeta_3,
-    metal::float4 quantiles_2,
+    metal::float4 quantiles_4,
     float noise_2
 ) {
     float _e5 = peelnet_absorbance(alpha_3);
     float depth_4 = (0.5 * zeta_3) + 0.5;
-    float _e10 = peelnet_place_among(depth_4, quantiles_2);
+    float _e10 = peelnet_place_among(depth_4, quantiles_4);
     metal::float4 _e11 = peelnet_record(_e5, rgb_2, depth_4, _e10, noise_2);
     metal::float3 _e12 = peelnet_shares(_e10);
     metal::float3 shares_3 = _e5 * _e12;
     return PeelnetStatistics {metal::float4(rgb_2 * shares_3.x, _e11.x), metal::float4(rgb_2 * shares_3.y, _e11.y), metal::float4(rgb_2 * shares_3.z, _e11.z), metal::float4(shares_3, _e11.w)};
 }
 
-metal::float4 peelnet_pixel(
+PeelnetRest peelnet_rest(
     metal::float4 sum_a,
     metal::float4 sum_b,
     metal::float4 sum_c,
     metal::float4 absorbances,
-    metal::float4 quantiles_3,
+    metal::float4 quantiles_5,
     float noise_3
 ) {
-    metal::float3 b_3 = metal::min(absorbances.xyz, metal::float3(65504.0));
-    metal::float4 all_1 = metal::float4((sum_a.xyz + sum_b.xyz) + sum_c.xyz, (b_3.x + b_3.y) + b_3.z);
-    PeelnetNearest _e26 = peelnet_nearest(metal::float4(sum_a.w, sum_b.w, sum_c.w, absorbances.w), all_1, quantiles_3, noise_3);
+    metal::float3 b_4 = metal::min(absorbances.xyz, metal::float3(65504.0));
+    metal::float4 all_1 = metal::float4((sum_a.xyz + sum_b.xyz) + sum_c.xyz, (b_4.x + b_4.y) + b_4.z);
+    PeelnetNearest _e26 = peelnet_nearest(metal::float4(sum_a.w, sum_b.w, sum_c.w, absorbances.w), all_1, quantiles_5, noise_3);
     metal::float3 _e28 = peelnet_shares(_e26.place);
-    metal::float4 _e32 = peelnet_behind(sum_a.xyz, b_3.x, _e28.x, _e26);
-    metal::float4 _e36 = peelnet_behind(sum_b.xyz, b_3.y, _e28.y, _e26);
-    metal::float4 _e40 = peelnet_behind(sum_c.xyz, b_3.z, _e28.z, _e26);
-    float two_2 = _e32.w + _e36.w;
-    float total_1 = two_2 + _e40.w;
-    float _e51 = peelnet_part(_e32.w, 0.0, 0.0, _e36.w, total_1, 0.0, _e26);
-    float _e58 = peelnet_part(_e36.w, _e32.w, _e32.w, _e40.w, total_1, 0.5, _e26);
-    float _e65 = peelnet_part(_e40.w, two_2, _e36.w, 0.0, total_1, 1.0, _e26);
-    metal::float4 seen_3 = ((_e32 * _e51) + (_e36 * _e58)) + (_e40 * _e65);
-    metal::float4 _e68 = peelnet_over_black(_e26, seen_3);
-    return _e68;
+    metal::float4 _e32 = peelnet_behind(sum_a.xyz, b_4.x, _e28.x, _e26);
+    metal::float4 _e36 = peelnet_behind(sum_b.xyz, b_4.y, _e28.y, _e26);
+    metal::float4 _e40 = peelnet_behind(sum_c.xyz, b_4.z, _e28.z, _e26);
+    return PeelnetRest {_e26, _e32, _e36, _e40};
 }
 
-metal::float4 peelnet_resolve(
+metal::float4 peelnet_pixel(
     metal::float4 sum_a_1,
     metal::float4 sum_b_1,
     metal::float4 sum_c_1,
     metal::float4 absorbances_1,
-    metal::float4 quantiles_4,
-    float noise_4,
+    metal::float4 quantiles_6,
+    float noise_4
+) {
+    PeelnetRest _e6 = peelnet_rest(sum_a_1, sum_b_1, sum_c_1, absorbances_1, quantiles_6, noise_4);
+    float two_2 = _e6.first.w + _e6.second.w;
+    float total_1 = two_2 + _e6.third.w;
+    float _e24 = peelnet_part(_e6.first.w, 0.0, 0.0, _e6.second.w, total_1, 0.0, _e6.nearest);
+    float _e37 = peelnet_part(_e6.second.w, _e6.first.w, _e6.first.w, _e6.third.w, total_1, 0.5, _e6.nearest);
+    float _e48 = peelnet_part(_e6.third.w, two_2, _e6.second.w, 0.0, total_1, 1.0, _e6.nearest);
+    metal::float4 seen_5 = ((_e6.first * _e24) + (_e6.second * _e37)) + (_e6.third * _e48);
+    metal::float4 _e52 = peelnet_over_black(_e6.nearest, seen_5);
+    return _e52;
+}
+
+metal::float4x4 peelnet_last_seen(
+    metal::float4 sum_a_2,
+    metal::float4 sum_b_2,
+    metal::float4 sum_c_2,
+    metal::float4 absorbances_2,
+    metal::float4 quantiles_7,
+    float noise_5
+) {
+    PeelnetRest _e6 = peelnet_rest(sum_a_2, sum_b_2, sum_c_2, absorbances_2, quantiles_7, noise_5);
+    metal::float3 b_5 = metal::float3(_e6.first.w, _e6.second.w, _e6.third.w);
+    metal::float3 _e15 = peelnet_seen_of(b_5, 0.0);
+    float scale_2 = _e6.nearest.left / metal::max(metal::dot(_e15, metal::float3(1.0)), 0.000000000000000000000000000000000000011754944);
+    metal::float3 begins_2 = metal::float3(0.0, 0.345, 0.738);
+    metal::float4x4 _e33 = peelnet_spread(_e15 * scale_2, begins_2, metal::float3(0.345, 0.738, 1.0), quantiles_7);
+    return _e33;
+}
+
+metal::float4 peelnet_resolve(
+    metal::float4 sum_a_3,
+    metal::float4 sum_b_3,
+    metal::float4 sum_c_3,
+    metal::float4 absorbances_3,
+    metal::float4 quantiles_8,
+    float noise_6,
     metal::float3 background
 ) {
-    metal::float4 _e7 = peelnet_pixel(sum_a_1, sum_b_1, sum_c_1, absorbances_1, quantiles_4, noise_4);
+    metal::float4 _e7 = peelnet_pixel(sum_a_3, sum_b_3, sum_c_3, absorbances_3, quantiles_8, noise_6);
     return metal::float4(_e7.xyz + ((1.0 - _e7.w) * background), _e7.w);
 }
 

@@ -337,6 +337,33 @@ fn peelnet_part(own: f32, before: f32, previous: f32, next: f32, total: f32, num
     return exp(-2.0 * ahead * peelnet_network(known));
 }
 
+// What is seen of three sums by the formula. before: absorbance of the sums before them.
+fn peelnet_seen_of(b: vec3f, before: f32) -> vec3f {
+    let ahead = vec3f(before + peelnet_inside(b.x), before + b.x + peelnet_inside(b.y), before + b.x + b.y + peelnet_inside(b.z));
+    return b * exp(-ahead);
+}
+
+// What three sums that are even between two places hold in front of four depths.
+fn peelnet_until(depths: vec4f, seen: vec3f, begins: vec3f, ends: vec3f, quantiles: vec4f) -> vec4f {
+    let scale = 1.0 / (ends - begins);
+    return vec4f(
+        dot(seen, clamp((vec3f(peelnet_place_among(depths.x, quantiles)) - begins) * scale, vec3f(0.0), vec3f(1.0))),
+        dot(seen, clamp((vec3f(peelnet_place_among(depths.y, quantiles)) - begins) * scale, vec3f(0.0), vec3f(1.0))),
+        dot(seen, clamp((vec3f(peelnet_place_among(depths.z, quantiles)) - begins) * scale, vec3f(0.0), vec3f(1.0))),
+        dot(seen, clamp((vec3f(peelnet_place_among(depths.w, quantiles)) - begins) * scale, vec3f(0.0), vec3f(1.0))),
+    );
+}
+
+// The same by sixteen bins of depth; as of peelnet_tile_seen.
+fn peelnet_spread(seen: vec3f, begins: vec3f, ends: vec3f, quantiles: vec4f) -> mat4x4f {
+    let depths = vec4f(0.0625, 0.125, 0.1875, 0.25);
+    let a = peelnet_until(depths, seen, begins, ends, quantiles);
+    let b = peelnet_until(depths + 0.25, seen, begins, ends, quantiles);
+    let c = peelnet_until(depths + 0.5, seen, begins, ends, quantiles);
+    let d = peelnet_until(depths + 0.75, seen, begins, ends, quantiles);
+    return mat4x4f(a - vec4f(0.0, a.xyz), b - vec4f(a.w, b.xyz), c - vec4f(b.w, c.xyz), d - vec4f(c.w, d.xyz));
+}
+
 // The pixel's colour over black, and its coverage. seen: of all sums what is seen of red, green, blue and absorbance.
 fn peelnet_over_black(nearest: PeelnetNearest, seen: vec4f) -> vec4f {
     let rest = select(nearest.color, seen.rgb / max(seen.a, 1.17549435e-38), seen.a > 0.0);
@@ -372,21 +399,47 @@ fn peelnet_statistics(alpha: f32, rgb: vec3f, zeta: f32, quantiles: vec4f, noise
     );
 }
 
-// The colour of a pixel over black, and its coverage.
-fn peelnet_pixel(sum_a: vec4f, sum_b: vec4f, sum_c: vec4f, absorbances: vec4f, quantiles: vec4f, noise: f32) -> vec4f {
+// A finished pixel: its nearest fragment, and its sums without it.
+struct PeelnetRest {
+    nearest: PeelnetNearest,
+    first: vec4f,
+    second: vec4f,
+    third: vec4f,
+}
+
+fn peelnet_rest(sum_a: vec4f, sum_b: vec4f, sum_c: vec4f, absorbances: vec4f, quantiles: vec4f, noise: f32) -> PeelnetRest {
     let b = min(absorbances.xyz, vec3f(65504.0));
     let all = vec4f(sum_a.rgb + sum_b.rgb + sum_c.rgb, b.x + b.y + b.z);
     let nearest = peelnet_nearest(vec4f(sum_a.w, sum_b.w, sum_c.w, absorbances.w), all, quantiles, noise);
     let shares = peelnet_shares(nearest.place);
-    let first = peelnet_behind(sum_a.rgb, b.x, shares.x, nearest);
-    let second = peelnet_behind(sum_b.rgb, b.y, shares.y, nearest);
-    let third = peelnet_behind(sum_c.rgb, b.z, shares.z, nearest);
-    let two = first.w + second.w;
-    let total = two + third.w;
-    let seen = first * peelnet_part(first.w, 0.0, 0.0, second.w, total, 0.0, nearest)
-        + second * peelnet_part(second.w, first.w, first.w, third.w, total, 0.5, nearest)
-        + third * peelnet_part(third.w, two, second.w, 0.0, total, 1.0, nearest);
-    return peelnet_over_black(nearest, seen);
+    return PeelnetRest(
+        nearest,
+        peelnet_behind(sum_a.rgb, b.x, shares.x, nearest),
+        peelnet_behind(sum_b.rgb, b.y, shares.y, nearest),
+        peelnet_behind(sum_c.rgb, b.z, shares.z, nearest),
+    );
+}
+
+// The colour of a pixel over black, and its coverage.
+fn peelnet_pixel(sum_a: vec4f, sum_b: vec4f, sum_c: vec4f, absorbances: vec4f, quantiles: vec4f, noise: f32) -> vec4f {
+    let r = peelnet_rest(sum_a, sum_b, sum_c, absorbances, quantiles, noise);
+    let two = r.first.w + r.second.w;
+    let total = two + r.third.w;
+    let seen = r.first * peelnet_part(r.first.w, 0.0, 0.0, r.second.w, total, 0.0, r.nearest)
+        + r.second * peelnet_part(r.second.w, r.first.w, r.first.w, r.third.w, total, 0.5, r.nearest)
+        + r.third * peelnet_part(r.third.w, two, r.second.w, 0.0, total, 1.0, r.nearest);
+    return peelnet_over_black(r.nearest, seen);
+}
+
+// What is seen behind the nearest fragment of a finished pixel, by sixteen bins of depth, for the quantiles of the next frame: by the formula,
+// each sum taken as even between two places.
+fn peelnet_last_seen(sum_a: vec4f, sum_b: vec4f, sum_c: vec4f, absorbances: vec4f, quantiles: vec4f, noise: f32) -> mat4x4f {
+    let r = peelnet_rest(sum_a, sum_b, sum_c, absorbances, quantiles, noise);
+    let b = vec3f(r.first.w, r.second.w, r.third.w);
+    let seen = peelnet_seen_of(b, 0.0);
+    let scale = r.nearest.left / max(dot(seen, vec3f(1.0)), 1.17549435e-38);
+    let begins = vec3f(0.0, 0.345, 0.738);
+    return peelnet_spread(seen * scale, begins, vec3f(0.345, 0.738, 1.0), quantiles);
 }
 
 // The colour and coverage of a pixel.

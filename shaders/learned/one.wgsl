@@ -204,6 +204,33 @@ fn peelnet_part(own: f32, before: f32, previous: f32, next: f32, total: f32, num
     return exp(-2.0 * ahead * peelnet_network(known));
 }
 
+// What is seen of three sums by the formula. before: absorbance of the sums before them.
+fn peelnet_seen_of(b: vec3f, before: f32) -> vec3f {
+    let ahead = vec3f(before + peelnet_inside(b.x), before + b.x + peelnet_inside(b.y), before + b.x + b.y + peelnet_inside(b.z));
+    return b * exp(-ahead);
+}
+
+// What three sums that are even between two places hold in front of four depths.
+fn peelnet_until(depths: vec4f, seen: vec3f, begins: vec3f, ends: vec3f, quantiles: vec4f) -> vec4f {
+    let scale = 1.0 / (ends - begins);
+    return vec4f(
+        dot(seen, clamp((vec3f(peelnet_place_among(depths.x, quantiles)) - begins) * scale, vec3f(0.0), vec3f(1.0))),
+        dot(seen, clamp((vec3f(peelnet_place_among(depths.y, quantiles)) - begins) * scale, vec3f(0.0), vec3f(1.0))),
+        dot(seen, clamp((vec3f(peelnet_place_among(depths.z, quantiles)) - begins) * scale, vec3f(0.0), vec3f(1.0))),
+        dot(seen, clamp((vec3f(peelnet_place_among(depths.w, quantiles)) - begins) * scale, vec3f(0.0), vec3f(1.0))),
+    );
+}
+
+// The same by sixteen bins of depth; as of peelnet_tile_seen.
+fn peelnet_spread(seen: vec3f, begins: vec3f, ends: vec3f, quantiles: vec4f) -> mat4x4f {
+    let depths = vec4f(0.0625, 0.125, 0.1875, 0.25);
+    let a = peelnet_until(depths, seen, begins, ends, quantiles);
+    let b = peelnet_until(depths + 0.25, seen, begins, ends, quantiles);
+    let c = peelnet_until(depths + 0.5, seen, begins, ends, quantiles);
+    let d = peelnet_until(depths + 0.75, seen, begins, ends, quantiles);
+    return mat4x4f(a - vec4f(0.0, a.xyz), b - vec4f(a.w, b.xyz), c - vec4f(b.w, c.xyz), d - vec4f(c.w, d.xyz));
+}
+
 // The pixel's colour over black, and its coverage. seen: of all sums what is seen of red, green, blue and absorbance.
 fn peelnet_over_black(nearest: PeelnetNearest, seen: vec4f) -> vec4f {
     let rest = select(nearest.color, seen.rgb / max(seen.a, 1.17549435e-38), seen.a > 0.0);

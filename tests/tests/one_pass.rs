@@ -4,9 +4,10 @@ use peelnet_core::{
     absorbance::DepthWarp,
     fragment::{self, Fragment},
     methods::{
-        one::{self, Around, Design, Tiles, formula, seen_behind_nearest},
+        one::{self, Around, Design, Kept, Tiles, formula, seen_behind_nearest},
         slabs,
     },
+    statistics::SumPrecision,
 };
 use peelnet_scene::Material;
 use peelnet_tests::{HALF, draw, gpu, object, rectangle, scene, wall};
@@ -20,6 +21,9 @@ const TOLERANCE: f32 = 32.0 * HALF;
 
 /// Where a value lies on the edge of two of the nearest fragment's steps, 32 bits may round it to the other one.
 const OTHER_STEPS: usize = 4;
+
+/// Frames that a still image is drawn in after the first.
+const SETTLED: u32 = 12;
 
 /// Five layers, two of which end in the middle of the frame: the pixel of the middle tiles sees other depths than those beside it, and all
 /// pixels are told what lies between.
@@ -57,13 +61,31 @@ fn pixels_are_told_what_is_seen_around_them() {
         let points = fragment::points(&fragments(x));
         seen_behind_nearest(&slabs::points(&points, &warp))
     };
-    let middles = [0, 1, 2].map(|k| (k, seen(8 * k + 4)));
-    let tiles = [0, 1]
-        .into_iter()
-        .flat_map(|y| middles.map(|(x, seen)| ([x, y], seen)));
-    let tiles = Tiles::new(SIZE, &tiles.collect());
-    assert_ne!(tiles.at([0, 0]), tiles.at([23, 0]));
-    for (method, design) in [("one", Design::ONE), ("one-wide", Design::WIDE)] {
+    let all_tiles = || [0, 1].into_iter().flat_map(|y| [0, 1, 2].map(|x| [x, y]));
+    let tiles = |seen: &dyn Fn([u32; 2]) -> [f64; one::TILE_BINS]| {
+        Tiles::new(SIZE, &all_tiles().map(|tile| (tile, seen(tile))).collect())
+    };
+    let small = tiles(&|[x, _]| seen(8 * x + 4));
+    assert_ne!(small.at([0, 0]), small.at([23, 0]));
+    for (method, design, frames) in [
+        ("one", Design::ONE, 0),
+        ("one-wide", Design::WIDE, 0),
+        ("one:range=last", Design::ONE, SETTLED),
+        ("one-wide:range=last", Design::WIDE, SETTLED),
+    ] {
+        let mut around = small.clone();
+        for _ in 0..frames {
+            around = tiles(&|tile| {
+                let pixel = tile.map(|k| 8 * k + 4);
+                let list = fragments(pixel[0]);
+                let points = slabs::points(&fragment::points(&list), &warp);
+                let colors = list.iter().map(|f| f.color);
+                let known = Around::new(around.at(pixel), pixel);
+                Kept::gather(&points, colors, design, known, SumPrecision::Half).last_seen()
+            });
+        }
+        assert_eq!(around == small, frames == 0);
+        let tiles = around;
         let image = draw(&gpu(), &scene, method, SIZE);
         let mut apart = Vec::new();
         for y in 0..SIZE[1] {

@@ -90,6 +90,12 @@ impl Prepared {
         ready.compositor.learn(&b, exact, words, stats)
     }
 
+    /// Whether the frame drawn last would not change if it was drawn again.
+    pub(crate) fn is_settled(&self) -> bool {
+        let ready = self.ready.as_ref();
+        ready.is_none_or(|ready| ready.compositor.is_settled())
+    }
+
     /// Where the repetitions of a frame sample its pixels.
     pub(crate) fn points(&self) -> Vec<SamplePoint> {
         match self.options.samples {

@@ -77,7 +77,8 @@ impl Renderer {
         )))
     }
 
-    /// Draws a view, counts what its statistics need, and reads the image back. Of several samples a pixel the frame is drawn once for each,
+    /// Draws a view, counts what its statistics need, and reads the image back. A method that makes frames from those before draws it until it
+    /// has settled, where the camera is not where it was, or near. Of several samples a pixel the frame is drawn once for each,
     /// through another place in every pixel, and the images are averaged: any method can, at so many times the time and no more memory.
     ///
     /// # Errors
@@ -92,7 +93,11 @@ impl Renderer {
         let mut sum = Profile::default();
         let points = method.points();
         for &point in &points {
-            sum.add(self.drawn(method, (camera, point), true, None).await?);
+            let mut drawn = self.drawn(method, (camera, point), true, None).await?;
+            while !method.is_settled() {
+                drawn = self.drawn(method, (camera, point), true, None).await?;
+            }
+            sum.add(drawn);
             let view = method.ready.as_ref().and_then(|r| r.frame.image.as_ref());
             let read = match view {
                 Some(view) => self.gpu().read_texture_async(view).await?,

@@ -77,6 +77,26 @@ impl Camera {
         )
     }
 
+    /// Whether so much moved on the screen since another camera that a frame of its says nothing of this one's: a thirty-second of the frame's
+    /// width, or a quarter of a depth.
+    pub fn is_cut_from(&self, last: &Self) -> bool {
+        let (near, far) = (self.near / last.near, self.far / last.far);
+        let clip_from_last =
+            self.clip_from_view(1.0) * self.view_from_world() * last.view_from_world().inverse();
+        let middle = (last.near * last.far).sqrt();
+        let tangent = (0.5 * last.fov_y_degrees).to_radians().tan();
+        let has_moved = |[x, y, depth]: [f32; 3]| {
+            let place = clip_from_last
+                * Vec3::new(x * tangent * depth, y * tangent * depth, -depth).extend(1.0);
+            let moved = glam::Vec2::new(place.x / place.w - x, place.y / place.w - y);
+            !(moved.length() < 0.0625 && (0.8..1.25).contains(&(place.w / depth)))
+        };
+        let corners = [-1.0, 1.0].into_iter().flat_map(|x| [[x, -1.0], [x, 1.0]]);
+        let mut places = corners.flat_map(|[x, y]| [middle, last.far].map(|depth| [x, y, depth]));
+        let is_ranged = [near, far].iter().all(|ratio| (0.8..1.25).contains(ratio));
+        !is_ranged || places.any(has_moved)
+    }
+
     /// The camera at so many places around its target.
     pub(crate) fn orbit(&self, views: u32) -> Vec<Self> {
         let degrees = |i: u32| 360.0 * i as f32 / views as f32;
@@ -120,5 +140,47 @@ mod tests {
         // 90° at depth 6: y = 6 is the upper edge, x = 12 the right one for aspect 2.
         let p = clip * Vec4::new(12.0, 6.0, 0.0, 1.0);
         assert!((p.x / p.w - 1.0).abs() < 1e-6 && (p.y / p.w - 1.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn a_camera_that_moves_a_little_is_no_cut() {
+        let camera = Camera {
+            position: Vec3::new(0.0, 0.0, 6.0),
+            target: Vec3::ZERO,
+            up: Vec3::Y,
+            fov_y_degrees: 45.0,
+            near: 1.0,
+            far: 36.0,
+        };
+        assert!(!camera.is_cut_from(&camera));
+        // A degree is a fortieth of the frame's height of 45 degrees, but the turn about the target moves the eye along.
+        assert!(!camera.orbited(0.3).is_cut_from(&camera));
+        let ahead = |z| Camera {
+            position: Vec3::new(0.0, 0.0, z),
+            target: Vec3::new(0.0, 0.0, z - 1.0),
+            ..camera
+        };
+        // At the corners of the middle depth 6, the picture grows by 6 / (6 - d).
+        assert!(!camera.is_cut_from(&ahead(6.2)));
+        for other in [
+            camera.orbited(20.0),
+            camera.orbited(180.0),
+            ahead(4.0),
+            Camera {
+                fov_y_degrees: 60.0,
+                ..camera
+            },
+            Camera {
+                up: Vec3::X,
+                ..camera
+            },
+            Camera {
+                far: 100.0,
+                ..camera
+            },
+        ] {
+            assert!(other.is_cut_from(&camera), "{other:?}");
+            assert!(camera.is_cut_from(&other), "{other:?}");
+        }
     }
 }

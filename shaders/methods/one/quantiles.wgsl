@@ -1,16 +1,11 @@
-// One pass, between its passes: the quantiles of each tile, of what is seen in the nine around it.
+// One pass, before it: the quantiles of each tile, of what is seen in the nine around it.
 // Loops: 2: three rows, and three columns.
-import package::learned::weight::{peelnet_quantiles, peelnet_tile_seen};
+import package::learned::weight::peelnet_quantiles;
 
 // Width and height of the frame.
 @group(0) @binding(0) var<uniform> frame: vec4u;
-@group(0) @binding(1) var bins_a: texture_2d<f32>;
-@group(0) @binding(2) var bins_b: texture_2d<f32>;
-@group(0) @binding(3) var bins_c: texture_2d<f32>;
-@group(0) @binding(4) var bins_d: texture_2d<f32>;
-@group(0) @binding(5) var bins_e: texture_2d<f32>;
-@group(0) @binding(6) var tile_nearest: texture_2d<f32>;
-@group(0) @binding(7) var<storage, read_write> quantiles: array<u32>;
+@group(0) @binding(1) var<storage, read> seen: array<mat4x4f>;
+@group(0) @binding(2) var<storage, read_write> quantiles: array<u32>;
 
 @compute @workgroup_size(64)
 fn main(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) lane: u32) {
@@ -24,13 +19,7 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: ve
     for (var y = -1; y <= 1; y++) {
         for (var x = -1; x <= 1; x++) {
             let at = vec2u(clamp(tile + vec2i(x, y), vec2i(0), vec2i(count) - 1));
-            let bins = mat4x4f(
-                textureLoad(bins_a, at, 0),
-                textureLoad(bins_b, at, 0),
-                textureLoad(bins_c, at, 0),
-                vec4f(textureLoad(bins_d, at, 0).xy, textureLoad(bins_e, at, 0).xy),
-            );
-            sum += peelnet_tile_seen(bins, textureLoad(tile_nearest, at, 0).x);
+            sum += seen[at.y * count.x + at.x];
         }
     }
     quantiles[index] = pack4x8unorm(peelnet_quantiles(sum));

@@ -201,6 +201,8 @@ impl Around {
 pub struct Design {
     pub middles: &'static [f64],
     pub widths: &'static [f64],
+    /// Where each sum ends if what is evenly spread over all places was put into them one after the other: the mean of all shares so far.
+    pub ends: &'static [f64],
 }
 
 pub const MAX_SUMS: usize = 6;
@@ -210,11 +212,13 @@ impl Design {
     pub const ONE: Self = Self {
         middles: &[0.224, 0.485, 1.028],
         widths: &[0.158, 0.168, 0.191],
+        ends: &[0.345, 0.738, 1.0],
     };
     /// Eight targets, 64 bytes.
     pub const WIDE: Self = Self {
         middles: &[0.199, 0.315, 0.495, 0.635, 0.784, 0.948],
         widths: &[0.069, 0.074, 0.072, 0.058, 0.068, 0.093],
+        ends: &[0.25, 0.408, 0.576, 0.702, 0.848, 1.0],
     };
 
     /// How a fragment at a place among the quantiles is shared between the sums.
@@ -361,6 +365,30 @@ impl Kept {
             color: [red, green, blue],
             place: self.around.quantiles.halfway().place(on_scale),
         }
+    }
+
+    /// What is seen behind the nearest fragment of a finished pixel, by bins of depth, from which the next frame's quantiles can be made: by the
+    /// formula, each sum taken as even between where it ends and where the one before does. Repeated on a still image, this is the
+    /// deconvolution of Richardson (1972) and Lucy (1974) with bumps that follow what they find.
+    pub fn last_seen(&self) -> [f64; TILE_BINS] {
+        let rest = self.rest();
+        let sums = rest.sums.iter().zip(&rest.ahead);
+        let parts = sums.map(|(sum, ahead)| sum[3] * ahead.seen(formula(ahead)));
+        let parts: Vec<f64> = parts.take(self.design.ends.len()).collect();
+        let scale = rest.left / parts.iter().sum::<f64>().max(f64::MIN_POSITIVE);
+        let until = |depth: f64| {
+            let (place, mut begin, mut all) = (self.around.quantiles.place(depth), 0.0, 0.0);
+            for (part, &end) in parts.iter().zip(self.design.ends) {
+                all += part * ((place - begin) / (end - begin)).clamp(0.0, 1.0);
+                begin = end;
+            }
+            all * scale
+        };
+        let mut before = 0.0;
+        std::array::from_fn(|k| {
+            let all = until((k + 1) as f64 / TILE_BINS as f64);
+            all - std::mem::replace(&mut before, all)
+        })
     }
 
     /// The nearest fragment, and the sums without it.
@@ -599,6 +627,85 @@ mod tests {
         let alone = seen_behind_nearest(&[at(1.0, 0.4)]);
         // Its depth is known to half of 1/240, a thirtieth of a bin, which moves that much of it to the next.
         assert!(alone.iter().sum::<f64>() < 0.04, "{alone:?}");
+    }
+
+    #[test]
+    fn sums_end_where_their_shares_of_even_places_do() {
+        const PLACES: u32 = 10_000;
+        for design in DESIGNS {
+            let mut all = [0.0; MAX_SUMS];
+            for k in 0..PLACES {
+                let shares = design.shares((f64::from(k) + 0.5) / f64::from(PLACES));
+                all.iter_mut()
+                    .zip(shares)
+                    .for_each(|(sum, share)| *sum += share / f64::from(PLACES));
+            }
+            let mut end = 0.0;
+            for (found, sum) in design.ends.iter().zip(all) {
+                end += sum;
+                // They are given to three digits, each from the one before.
+                assert!(
+                    (found - end).abs() < 0.5e-3 * design.ends.len() as f64,
+                    "{found} for {end}"
+                );
+            }
+        }
+    }
+
+    /// Faint fragments at even places among any quantiles: what is seen of them leads to the same quantiles again. Behind other quantiles it moves
+    /// those towards the ones that the fragments have.
+    #[test]
+    fn what_was_seen_last_keeps_quantiles_that_are_right_and_mends_others() {
+        let right = Quantiles([0.25, 0.4375, 0.5625, 0.625]);
+        let even = (0..400).map(|k| {
+            let place = (f64::from(k) + 0.5) / 400.0;
+            // The depth of a place, by bisection.
+            let halves = (1..40).fold(0.0, |depth, k| {
+                let next = depth + 0.5f64.powi(k);
+                if right.place(next) <= place {
+                    next
+                } else {
+                    depth
+                }
+            });
+            at(1e-4, halves)
+        });
+        // The nearest fragment is none of them, and nothing is seen of it.
+        let fragments: Vec<Point> = even.chain([at(1e-4, 0.0)]).collect();
+        let next = |quantiles, design| {
+            let around = Around {
+                quantiles,
+                noise: 0.5,
+            };
+            let grey = std::iter::repeat([0.5; 3]);
+            let kept = Kept::gather(&fragments, grey, design, around, SumPrecision::Exact);
+            Quantiles::of_seen(kept.last_seen())
+        };
+        let apart = |Quantiles(a): Quantiles| {
+            let differences = a.iter().zip(right.0).map(|(a, b)| (a - b).abs());
+            differences.fold(0.0, f64::max)
+        };
+        const BIN: f64 = 1.0 / TILE_BINS as f64;
+        // Quantiles at the ends of bins, inside of which everything is even: what is left are steps of 1/255 and of the fragments.
+        const STEPS: f64 = 1.0 / 255.0 + 1.0 / 400.0;
+        for design in DESIGNS {
+            assert!(
+                apart(next(right, design)) < STEPS,
+                "{:?}",
+                next(right, design)
+            );
+            let mut found = Quantiles::EVEN;
+            for _ in 0..12 {
+                found = next(found, design);
+            }
+            // The outer ones lie inside of the first and the last sum, which say little of where.
+            let inner = [1, 2].map(|k| (found.0[k] - right.0[k]).abs());
+            assert!(inner[0].max(inner[1]) < BIN / 2.0, "{design:?}: {found:?}");
+            assert!(
+                apart(found) < apart(Quantiles::EVEN) / 2.0,
+                "{design:?}: {found:?}"
+            );
+        }
     }
 
     /// Where all tiles see the same, so do all pixels; beside a tile that sees nothing the quantiles are those of what is seen.

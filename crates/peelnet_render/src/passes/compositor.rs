@@ -77,6 +77,11 @@ pub(crate) trait Compositor: fmt::Debug + wgpu::WasmNotSend {
         true
     }
 
+    /// Whether a still image would not change any more, for a method that makes frames from those before.
+    fn is_settled(&self) -> bool {
+        true
+    }
+
     /// What to read back of the frame just recorded; empty for methods that need no counts.
     fn feedback(&self) -> Vec<wgpu::Buffer> {
         Vec::new()

@@ -104,6 +104,10 @@ impl Compositor for LowResolution {
         self.method.is_ready()
     }
 
+    fn is_settled(&self) -> bool {
+        self.method.is_settled()
+    }
+
     fn feedback(&self) -> Vec<wgpu::Buffer> {
         self.method.feedback()
     }

@@ -18,7 +18,7 @@ use crate::gpu::{Kernel, bind::Bind, wgpu};
 use crate::methods::{MethodSpec, Precision};
 use compositor::{Build, Compositor, resolve};
 use peelnet_model::{Recipe, inputs::Surroundings};
-use planned::{Planned, PlannedPass, Work};
+use planned::{History, Planned, PlannedPass, Work};
 use views::Shows;
 
 #[derive(Clone, Copy, Debug)]
@@ -153,6 +153,8 @@ pub(crate) struct Pass {
     parameters: Option<String>,
     reads: Vec<Handle>,
     writes: Vec<Handle>,
+    /// Draws it in the first frame and where the camera jumped only: what it writes stays for the frames that follow.
+    pub after_cuts: bool,
 }
 
 impl Pass {
@@ -309,6 +311,7 @@ impl<'a> Passes<'a> {
             parameters: None,
             reads: Vec::new(),
             writes: Vec::new(),
+            after_cuts: false,
         });
         let place = self.passes.len() - 1;
         &mut self.passes[place]
@@ -420,6 +423,7 @@ impl<'a> Passes<'a> {
         let frame_bytes = sizes.frame + sorted.as_ref().map_or(0, Sorted::bytes);
         Ok(Box::new(Planned {
             passes,
+            history: History::default(),
             cleared: sizes.cleared,
             attachment,
             sorted,
@@ -516,6 +520,7 @@ impl<'a> Passes<'a> {
             label: pass.label.clone(),
             colors,
             every,
+            after_cuts: pass.after_cuts,
             work,
         })
     }

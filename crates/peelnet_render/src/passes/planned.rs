@@ -8,10 +8,12 @@ use crate::geometry::{
     fullscreen::FullscreenPass,
 };
 use crate::gpu::{Kernel, wgpu};
+use peelnet_scene::Camera;
 
 #[derive(Debug)]
 pub(super) struct Planned {
     pub passes: Vec<PlannedPass>,
+    pub history: History,
     /// Storage, cleared at the start of every frame.
     pub cleared: Vec<wgpu::Buffer>,
     /// Of passes that write storage alone.
@@ -27,7 +29,32 @@ pub(super) struct PlannedPass {
     pub colors: Vec<Option<(wgpu::TextureView, [f64; 4])>>,
     /// [`Target::every`](super::Target::every) of those.
     pub every: u32,
+    /// Whether it is drawn in the first frame and where the camera jumped only.
+    pub after_cuts: bool,
     pub work: Work,
+}
+
+/// What is known of the frames before.
+#[derive(Debug, Default)]
+pub(super) struct History {
+    camera: Option<Camera>,
+    /// Frames since the first, or since the camera jumped.
+    frames: u32,
+}
+
+/// Frames after which a still image that is made from frame to frame has settled.
+const SETTLED: u32 = 12;
+
+impl History {
+    fn next(&mut self, camera: &Camera) {
+        let is_next = self.camera.is_some_and(|last| !camera.is_cut_from(&last));
+        self.frames = if is_next {
+            self.frames.saturating_add(1)
+        } else {
+            0
+        };
+        self.camera = Some(*camera);
+    }
 }
 
 #[derive(Debug)]
@@ -39,8 +66,14 @@ pub(super) enum Work {
 }
 
 impl Planned {
+    /// The passes of this frame.
+    fn drawn(&self) -> impl Iterator<Item = &PlannedPass> {
+        let is_cut = self.history.frames == 0;
+        self.passes.iter().filter(move |p| is_cut || !p.after_cuts)
+    }
+
     fn count(&self, counts: impl Fn(&Work) -> bool) -> u32 {
-        self.passes.iter().filter(|p| counts(&p.work)).count() as u32
+        self.drawn().filter(|p| counts(&p.work)).count() as u32
     }
 
     fn draw_geometry(&self, cx: &mut DrawContext<'_, '_>, p: &PlannedPass) {
@@ -81,7 +114,8 @@ impl Compositor for Planned {
         for buffer in &self.cleared {
             cx.recorder.encoder().clear_buffer(buffer, 0, None);
         }
-        for p in &self.passes {
+        self.history.next(cx.camera);
+        for p in self.drawn() {
             match &p.work {
                 Work::Pixels(resolve) => cx.resolve(resolve),
                 Work::Threads(kernel, threads) => kernel.dispatch(cx.recorder, *threads),
@@ -95,5 +129,9 @@ impl Compositor for Planned {
             bytes_per_pixel: self.bytes_per_pixel,
             ..Default::default()
         })
+    }
+
+    fn is_settled(&self) -> bool {
+        self.history.frames >= SETTLED || !self.passes.iter().any(|p| p.after_cuts)
     }
 }

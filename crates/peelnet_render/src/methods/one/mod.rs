@@ -10,8 +10,8 @@ use peelnet_model::inputs::one_surroundings;
 
 const RANGE: Parameter = Parameter::words(
     "range",
-    "where the depths come from that sums are parted at: one pixel in 64, drawn first without shading (tiles, by default), or the frame's nearest and farthest depth (frame), without a pass more and with several times the error",
-    &["tiles", "frame"],
+    "where the depths come from that sums are parted at: one pixel in 64, drawn first without shading (tiles, by default), what the last frame's sums show (last), which draws those pixels in the first frame and after jumps alone, or the frame's nearest and farthest depth (frame), with several times the error",
+    &["tiles", "last", "frame"],
 );
 
 /// Whether pixels are drawn without looking at others.
@@ -31,7 +31,7 @@ fn design(spec: &MethodSpec) -> Design {
 const fn one(name: &'static str, about: &'static str) -> Method {
     Method {
         parameters: &[RANGE],
-        curve: &["", ":range=frame"],
+        curve: &["", ":range=last", ":range=frame"],
         expectations: expectations::ONE,
         ..Method::new(name, about, passes)
     }
@@ -49,7 +49,7 @@ pub(super) const WIDE: Method = one(
 
 pub(super) const DEEP: Method = Method {
     learned: true,
-    curve: &["", ":range=frame", ":scale=0.5"],
+    curve: &["", ":range=last", ":range=frame", ":scale=0.5"],
     ..one(
         "deep-one",
         "one geometry pass, and a network that says how much of each of three sums is seen; 32 bytes a pixel",
@@ -78,24 +78,38 @@ fn passes(p: &mut Passes<'_>) {
     };
     let kept = p.described(surroundings.passes[0].targets);
     let around = surroundings.around.filter(|_| !is_framed);
+    let from_last = RANGE.word(p.on.spec) == "last";
     let quantiles = around.map(|around| {
-        let tiles = around.pass.targets.iter();
-        let tiles = tiles.map(|target| Target::described(target).every(around.every));
-        let tiles = p.targets(tiles);
+        let small = around.pass.targets.iter();
+        let small = small.map(|target| Target::described(target).every(around.every));
+        let small = p.targets(small);
         let [columns, rows] = p.on.size.map(|n| u64::from(n.div_ceil(around.every)));
-        let found = p.uncleared(around.name, 4 * columns * rows);
-        p.geometry("methods::one::tiles", Needs::OPACITY)
-            .features(["tiles"])
-            .writes(tiles.iter().copied());
-        p.compute("methods::one::quantiles", columns * rows)
-            .reads(tiles)
+        let tiles = columns * rows;
+        let seen = p.uncleared("seen", 64 * tiles);
+        let found = p.uncleared(around.name, 4 * tiles);
+        let geometry = p.geometry("methods::one::tiles", Needs::OPACITY);
+        geometry.features(["tiles"]).writes(small.iter().copied());
+        geometry.after_cuts |= from_last;
+        let bins = p.compute("methods::one::seen", tiles);
+        bins.features(["tiles"]).reads(small).writes([seen]);
+        bins.after_cuts |= from_last;
+        p.compute("methods::one::quantiles", tiles)
+            .reads([seen])
             .writes([found]);
-        found
+        (found, seen, tiles)
     });
+    let found = quantiles.map(|(found, ..)| found);
     p.geometry("methods::one::gather", Needs::COLOR)
         .features(features())
-        .reads(quantiles)
+        .reads(found)
         .writes(kept.iter().copied());
+    if let Some((found, seen, tiles)) = quantiles.filter(|_| from_last) {
+        p.compute("methods::one::seen", tiles)
+            .features(is_wide.then_some("wide"))
+            .reads(kept.iter().copied())
+            .reads([found])
+            .writes([seen]);
+    }
     let tint = p.on.tinted.then(|| p.target(crate::passes::TINTED));
     if let Some(tint) = tint {
         p.geometry("methods::one::tint", Needs::COLOR)
@@ -103,6 +117,6 @@ fn passes(p: &mut Passes<'_>) {
     }
     p.resolve("methods::one::resolve", kept)
         .features(features().chain(tint.map(|_| "tinted")))
-        .reads(quantiles)
+        .reads(found)
         .reads(tint);
 }
