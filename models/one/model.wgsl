@@ -38,6 +38,7 @@
 //    bins_e: rg8unorm, cleared to 0, blending ADD, from bins[3].zw
 //    tile_nearest: r16float, cleared to -65504, blending MAX, from peelnet_tile_nearest(alpha, zeta)
 //    Then each of its texels is peelnet_quantiles(sum): sum adds, over the 3 by 3 texels around it, peelnet_tile_seen(mat4x4f(bins_a, bins_b, bins_c, vec4f(bins_d, bins_e)), tile_nearest).
+//    Or make it without that pass from what the last frame kept of the pixel in the middle of each of them, of peelnet_last_seen(sum_a, sum_b, sum_c, absorbances, quantiles, noise), but for the first frame and after jumps of the camera.
 // 1. Pass "gather": draw all transparent surfaces, in any order. let s = peelnet_statistics(alpha, rgb, zeta, quantiles, noise);
 //    sum_a: rgba16float, cleared to 0, 0, 0, -65504, blending ADD for rgb, MAX for alpha, from s.sum_a
 //    sum_b: rgba16float, cleared to 0, 0, 0, -65504, blending ADD for rgb, MAX for alpha, from s.sum_b

@@ -13,6 +13,15 @@ const geometryBoxes = /*@__PURE__*/ new WeakMap();
 const instanceBoxes = /*@__PURE__*/ new WeakMap();
 const boneBoxes = /*@__PURE__*/ new WeakMap();
 
+/** Where a distance along the view axis lies in what `write` wrote, -1 at near to 1 at far. */
+export function warped( distance, { x, y, z, w } ) {
+
+	const fromNear = y === 0 ? distance - x - z : Math.log( Math.max( distance * y, 1 ) );
+
+	return Math.min( Math.max( fromNear * w - 1, - 1 ), 1 );
+
+}
+
 /** The range of z, the distance along the view axis, of everything added since `reset`. */
 export class DepthRange {
 

@@ -39,6 +39,7 @@ export interface PeelnetAround {
 	/** A texel's value, of that sum. */
 	write: string;
 	/** Stands for it where it is not drawn. */
+	last?: string;
 	otherwise: string;
 }
 
@@ -66,8 +67,11 @@ export interface PeelnetModel {
 
 export interface PeelnetPassOptions {
 	model: PeelnetModel;
-	/** Where depths are told apart: in each pixel's own range or surroundings, at one more pass (the default), or in the frame's. */
-	range?: 'pixel' | 'frame';
+	/**
+	 * Where depths are told apart: in each pixel's own range or surroundings, at one more pass (the default), in the frame's, or, for
+	 * models that read their surroundings, where the last frame's pixels show what is seen.
+	 */
+	range?: 'pixel' | 'frame' | 'last';
 	/** `[near, far]` of the distance along the view axis. The default is the range of the transparent objects' boxes in view. */
 	depthRange?: readonly [ number, number ] | null;
 	/** Called once for each problem; the scene is then drawn sorted. The default writes to the console. */
@@ -86,7 +90,7 @@ export class PeelnetPassNode extends PassNode {
 	/** The model that is drawn. May be set at any time. */
 	model: PeelnetModel;
 	/** May be set at any time. */
-	range: 'pixel' | 'frame';
+	range: 'pixel' | 'frame' | 'last';
 	depthRange: readonly [ number, number ] | null;
 	onProblem: ( message: string ) => void;
 	/** What keeps the model from being drawn, or null. */

@@ -1,14 +1,20 @@
 // The pass that replaces three.js's sorted drawing of transparent objects by a learned, order-independent one.
 
-import { NormalBlending, PassNode, RenderTarget, RendererUtils, Vector2, Vector4 } from 'three/webgpu';
+import { Matrix4, NormalBlending, PassNode, RenderTarget, RendererUtils, Vector2, Vector3, Vector4 } from 'three/webgpu';
 import { renderGroup, uniform } from 'three/tsl';
-import { DepthRange } from './depth-range.js';
+import { DepthRange, warped } from './depth-range.js';
 import { blendAlike, deviceProblem, drawnPasses, watchDevice } from './device.js';
 import { modelProblem } from './model.js';
 import { releasePasses } from './release.js';
 import { Stages } from './stages.js';
 
 const _size = /*@__PURE__*/ new Vector2();
+const _place = /*@__PURE__*/ new Vector3();
+const _view = /*@__PURE__*/ new Vector3();
+
+// What may move from frame to frame where the next one is made from the last: places, of a frame of 2, and depths, of a range of 2.
+const MOVED = 0.0625;
+const STRETCHED = 0.125;
 
 let _rendererState;
 let _sceneState;
@@ -203,8 +209,10 @@ export class PeelnetPassNode extends PassNode {
 			isGlsl: renderer.backend.isWebGPUBackend !== true,
 			depthTexture: this.renderTarget.depthTexture,
 			below: this.renderTarget.texture,
-			span: this._span
+			span: this._span,
+			fromLast: this._range === 'last'
 		} );
+		this._seen = null;
 		this._cleared.set( 0, 0 );
 		this._built = renderer;
 
@@ -212,11 +220,13 @@ export class PeelnetPassNode extends PassNode {
 
 	_findProblem( renderer ) {
 
-		if ( this._range !== 'pixel' && this._range !== 'frame' ) return 'The option range is neither "pixel" nor "frame".';
+		if ( [ 'pixel', 'frame', 'last' ].includes( this._range ) === false ) return 'The option range is neither "pixel" nor "frame" nor "last".';
 
 		const problem = modelProblem( this._model );
 
 		if ( problem !== null ) return problem;
+
+		if ( this._range === 'last' && this._model.description.around?.last === undefined ) return `The recipe "${ this._model.description.recipe }" does not read what the last frame shows: set the range to "pixel" or "frame".`;
 
 		if ( this.renderTarget.samples > 1 ) return `Multisampling is not supported: a model's statistics must not be averaged over the ${ this.renderTarget.samples } samples of a pixel. Pass { samples: 0 }, and smooth edges afterwards, for example with fxaa().`;
 
@@ -293,8 +303,12 @@ export class PeelnetPassNode extends PassNode {
 		renderer.opaque = renderer.sortObjects = false;
 		renderer.transparent = true;
 
-		for ( const { first, target, node, shaded, then } of this._stages.passes ) {
+		const { passes, next, quad } = this._stages;
+		const isCut = next === null || this._isCut();
 
+		for ( const { first, target, node, shaded, afterCuts, then } of passes ) {
+
+			if ( afterCuts && isCut === false ) continue;
 			if ( first !== undefined ) drawQuad( renderer, first );
 
 			// Passes without colour need no light.
@@ -316,7 +330,38 @@ export class PeelnetPassNode extends PassNode {
 		RendererUtils.restoreSceneState( scene, _sceneState );
 		camera.layers.mask = mask;
 
-		drawQuad( renderer, { target: this._finished, quad: this._stages.quad } );
+		drawQuad( renderer, { target: this._finished, quad } );
+
+		if ( next === null ) return;
+
+		drawQuad( renderer, next );
+		this._stages.swap();
+
+	}
+
+	/** Whether so much moved since the last frame that this one learns nothing from it: places by a thirty-second of the frame, or depths by a bin. */
+	_isCut() {
+
+		const { camera, _span: { value: span } } = this;
+		const clipFromWorld = new Matrix4().multiplyMatrices( camera.projectionMatrix, camera.matrixWorldInverse );
+		const last = this._seen;
+
+		this._seen = { clipFromWorld, worldFromClip: clipFromWorld.clone().invert(), span: span.clone() };
+
+		if ( last === null ) return true;
+
+		const isApart = ( [ x, y, z ] ) => {
+
+			const place = _place.set( x, y, z ).applyMatrix4( last.worldFromClip );
+			const depth = - _view.copy( place ).applyMatrix4( camera.matrixWorldInverse ).z;
+
+			place.applyMatrix4( clipFromWorld );
+
+			return ! ( Math.hypot( place.x - x, place.y - y ) < MOVED && Math.abs( warped( depth, span ) - warped( depth, last.span ) ) < STRETCHED );
+
+		};
+
+		return [ - 1, 1 ].some( ( x ) => [ - 1, 1 ].some( ( y ) => [ 0.5, 0.99 ].some( ( z ) => isApart( [ x, y, z ] ) ) ) );
 
 	}
 

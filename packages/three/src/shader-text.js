@@ -110,17 +110,19 @@ export function resolveText( model, drawn, isGlsl ) {
 
 }
 
-/** What a texel adds to the sum that the small texture is made of, as a function of that sum and of what is read there. */
-export function sumText( model, isGlsl ) {
+/**
+ * What a texel adds to the sum that the small texture is made of, as a function of that sum and of what is read there: one of the description's
+ * expressions `sum`, of the small pass, and `last`, of the last frame. `names` are those of what it reads.
+ */
+export function sumText( model, key, names, isGlsl ) {
 
 	const language = isGlsl ? GLSL : WGSL;
-	const { sum, pass } = model.description.around;
-	const names = pass.targets.map( ( target ) => target.name );
 	const drawn = new Set( names );
 
-	return language.function( 'peelnet_around_sum', [ [ 'sum', 'mat4' ], ...parameters( names, drawn ) ], 'mat4', [
+	return language.function( `peelnet_around_${ key }`, [ [ 'sum', 'mat4' ], [ 'pixel', 'vec2' ], ...parameters( names, drawn ) ], 'mat4', [
 		...reads( language, model, names, drawn ),
-		`\treturn sum + ${ language.expression( sum ) };`
+		...noise( language, model, isGlsl ),
+		`\treturn sum + ${ language.expression( model.description.around[ key ] ) };`
 	].join( '\n' ) );
 
 }

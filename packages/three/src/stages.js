@@ -4,7 +4,7 @@ import {
 	AddEquation, AlwaysDepth, BlendMode, CustomBlending, DepthTexture, FloatType, HalfFloatType, MaxEquation, NearestFilter, NoBlending, NodeMaterial,
 	LinearFilter, OneFactor, OneMinusSrcAlphaFactor, OneMinusSrcColorFactor, QuadMesh, RGBAFormat, RGFormat, RedFormat, RenderTarget, UnsignedByteType, Vector4, ZeroFactor
 } from 'three/webgpu';
-import { Fn, code, diffuseColor, glslFn, ivec2, mat4, mrt, output, positionView, renderGroup, screenCoordinate, screenSize, screenUV, texture, textureLoad, uniform, vec4, wgslFn } from 'three/tsl';
+import { Fn, code, diffuseColor, glslFn, ivec2, mat4, mrt, output, positionView, renderGroup, screenCoordinate, screenSize, screenUV, texture, textureLoad, uniform, vec2, vec4, wgslFn } from 'three/tsl';
 import { isShaded } from './model.js';
 import { aroundText, libraryText, passText, resolveText, sumText } from './shader-text.js';
 
@@ -70,8 +70,8 @@ const straightColor = /*@__PURE__*/ Fn( ( builder ) => {
 
 } );
 
-// Sums over a texel of a full-screen pass and the eight around it.
-function sumAround( textures, add ) {
+// Sums over a texel of a full-screen pass and the eight around it: what `read` finds there, a pixel and what is kept of it.
+function sumAround( read, add ) {
 
 	const texel = ivec2( screenCoordinate.xy );
 	const last = ivec2( screenSize ).sub( 1 );
@@ -81,7 +81,7 @@ function sumAround( textures, add ) {
 
 		const at = texel.add( ivec2( x, y ) ).clamp( ivec2( 0 ), last ).toVar();
 
-		sum = add( sum, ...textures.map( ( texture ) => textureLoad( texture, at ) ) ).toVar();
+		sum = add( sum, ...read( at ) ).toVar();
 
 	}
 
@@ -92,7 +92,7 @@ function sumAround( textures, add ) {
 /** The passes of one model, ready to draw. `span` is the uniform of the frame's range of depth. */
 export class Stages {
 
-	constructor( model, passes, { isGlsl, depthTexture, below, span } ) {
+	constructor( model, passes, { isGlsl, depthTexture, below, span, fromLast } ) {
 
 		const { around, resolve_reads } = model.description;
 		const library = code( libraryText( model, isGlsl ), [], isGlsl ? 'glsl' : 'wgsl' );
@@ -104,6 +104,7 @@ export class Stages {
 		// What earlier passes wrote at the pixel, by the names of the description, and the small textures.
 		const written = new Map();
 		const small = new Map();
+		const kept = new Map();
 		const smallDepth = new DepthTexture( 1, 1, depthTexture.type );
 
 		const texels = ( names ) => names.filter( ( name ) => written.has( name ) ).map( ( name ) => written.get( name ) );
@@ -128,7 +129,7 @@ export class Stages {
 
 			} );
 
-			const result = { target, node, shaded: isShaded( pass ), every: isSmall ? around.every : 1 };
+			const result = { target, node, shaded: isShaded( pass ), every: isSmall ? around.every : 1, afterCuts: isSmall && fromLast };
 
 			if ( isSmall ) {
 
@@ -145,16 +146,21 @@ export class Stages {
 
 				if ( small.size === around.pass.targets.length ) {
 
-					const textures = around.pass.targets.map( ( { name } ) => small.get( name ) );
+					const names = around.pass.targets.map( ( { name } ) => name );
 
-					result.then = { target: renderTarget( [ around ], null, LinearFilter ), quad: fullScreen( 'around', { fragmentNode: native( aroundText( model, isGlsl ) )( sumAround( textures, native( sumText( model, isGlsl ) ) ) ) } ) };
+					result.then = this._around( model, native, isGlsl, 'sum', names, ( at ) => [ vec2( at ), ...names.map( ( name ) => textureLoad( small.get( name ), at ) ) ] );
 					written.set( around.name, texture( result.then.target.texture, pixel.sub( viewport.xy ).div( viewport.zw ) ) );
 
 				}
 
 			} else {
 
-				pass.targets.forEach( ( { name }, i ) => written.set( name, textureLoad( target.textures[ i ], texel ) ) );
+				pass.targets.forEach( ( { name }, i ) => {
+
+					kept.set( name, target.textures[ i ] );
+					written.set( name, textureLoad( target.textures[ i ], texel ) );
+
+				} );
 
 			}
 
@@ -162,8 +168,47 @@ export class Stages {
 
 		} );
 
+		this.next = null;
+
+		if ( fromLast ) {
+
+			const names = resolve_reads;
+			const current = written.get( around.name );
+
+			// The middles of tiles, and what the finished frame kept there.
+			this.next = this._around( model, native, isGlsl, 'last', names, ( at ) => {
+
+				const middle = vec2( at.mul( around.every ).add( around.every / 2 ) ).min( viewport.zw.sub( 1 ) ).add( viewport.xy ).toVar();
+				const place = middle.add( 0.5 ).sub( viewport.xy ).div( viewport.zw );
+
+				return [ middle.add( 0.5 ), ...names.map( ( name ) => name === around.name ? current.sample( place ).level( 0 ) : textureLoad( kept.get( name ), ivec2( middle ) ) ) ];
+
+			} );
+			this._current = current;
+
+		}
+
 		this.quad = fullScreen( 'resolve', { fragmentNode: native( resolveText( model, written, isGlsl ) )( textureLoad( below, texel ), pixel, ...texels( resolve_reads ) ) } );
 		this._viewport = viewport.value;
+
+	}
+
+	// The pass that makes the small texture.
+	_around( model, native, isGlsl, key, names, read ) {
+
+		const sum = sumAround( read, native( sumText( model, key, names, isGlsl ) ) );
+
+		return { target: renderTarget( [ model.description.around ], null, LinearFilter ), quad: fullScreen( `around ${ key }`, { fragmentNode: native( aroundText( model, isGlsl ) )( sum ) } ) };
+
+	}
+
+	/** What is drawn now reads the small texture that was made last. */
+	swap() {
+
+		const then = this.passes.findLast( ( pass ) => pass.then !== undefined ).then;
+
+		[ then.target, this.next.target ] = [ this.next.target, then.target ];
+		this._current.value = then.target.texture;
 
 	}
 
@@ -176,7 +221,7 @@ export class Stages {
 
 			if ( every > 1 ) {
 
-				for ( const small of [ first?.target, target, then?.target ] ) small?.setSize( Math.ceil( viewport.z / every ), Math.ceil( viewport.w / every ) );
+				for ( const small of [ first?.target, target, then?.target, this.next?.target ] ) small?.setSize( Math.ceil( viewport.z / every ), Math.ceil( viewport.w / every ) );
 
 				continue;
 
@@ -202,7 +247,7 @@ export class Stages {
 
 		}
 
-		this.quad.material.dispose();
+		for ( const made of [ this.quad.material, this.next?.target, this.next?.quad.material ] ) made?.dispose();
 
 	}
 

@@ -22,6 +22,8 @@ const ONE_SHOWN = 3;
 const ONE_LINEAR = 0.02;
 // Its error without the surroundings of each pixel.
 const ONE_OF_SORTED = 0.6;
+// What three sums of the last frame tell of the surroundings, beside sixteen bins of depth: the error at most, of that of the small pass.
+const LAST_OF_SMALL = 1.5;
 // Tone mapping steepens differences: still less than a step in the mean.
 const MAPPED = 1;
 
@@ -112,6 +114,19 @@ for ( const backend of [ 'webgpu', 'webgl2' ] ) {
 				for ( const k of [ 0, 1, 2 ] ) assert.ok( Math.abs( color[ k ] - pixel.color[ k ] ) <= most, `${ name }: ${ color } instead of ${ pixel.color }` );
 
 			}
+
+		} );
+
+		test( 'range last: the first frame and that after a jump are those of the small pass, and a still image is nearly as good', async () => {
+
+			const { first, settled, before, jumped, moved, problems } = await run( 'lastFrame', backend );
+
+			console.log( `    range: 'last' ${ settled.rmse.toFixed( 2 ) }/255, with the small pass ${ before.rmse.toFixed( 2 ) }` );
+			assert.deepEqual( problems, [] );
+			assert.equal( first.largest, SAME );
+			assert.equal( jumped.largest, SAME );
+			assert.ok( moved.largest > SAME && moved.rmse <= before.rmse, String( moved.rmse ) );
+			assert.ok( settled.rmse <= LAST_OF_SMALL * before.rmse );
 
 		} );
 
@@ -233,7 +248,7 @@ for ( const backend of [ 'webgpu', 'webgl2' ] ) {
 			const result = await run( 'bad', backend );
 			const expected = {
 				none: /no peelnet export/, 'no model': /no peelnet export/, version: /format version 2.*reads version 1/, recipe: /reads "front"/, format: /unknown format, blend or clear/,
-				blend: /unknown format, blend or clear/, name: /unknown format, blend or clear/, text: /no WGSL text/, range: /neither "pixel" nor "frame"/, multisampling: /Multisampling is not supported/, depth: /needs a depth buffer/,
+				blend: /unknown format, blend or clear/, name: /unknown format, blend or clear/, text: /no WGSL text/, range: /neither "pixel" nor "frame" nor "last"/, multisampling: /Multisampling is not supported/, depth: /needs a depth buffer/,
 				...( backend === 'webgpu' ? { compatibility: /compatibility mode/, bytes: /24 bytes a sample.*has 16/ } : { glsl: /no GLSL text/ } )
 			};
 

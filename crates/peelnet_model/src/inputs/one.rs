@@ -157,7 +157,7 @@ const BEFORE: &str = concat!(
     of the nearest fragment; 0.5 where that does not matter."
 );
 
-static AROUND: SmallTexture = SmallTexture {
+const AROUND: SmallTexture = SmallTexture {
     name: "quantiles",
     format: "rgba8unorm",
     every: TILE,
@@ -181,12 +181,24 @@ static AROUND: SmallTexture = SmallTexture {
         ],
     ),
     sum: "peelnet_tile_seen(mat4x4f(bins_a, bins_b, bins_c, vec4f(bins_d, bins_e)), tile_nearest)",
+    last: "",
     write: "peelnet_quantiles(sum)",
     otherwise: "peelnet_even()",
 };
 
+static AROUND_ONE: SmallTexture = SmallTexture {
+    last: "peelnet_last_seen(sum_a, sum_b, sum_c, absorbances, quantiles, noise)",
+    ..AROUND
+};
+
+static AROUND_WIDE: SmallTexture = SmallTexture {
+    last: "peelnet_last_seen(sum_a, sum_b, sum_c, sum_d, sum_e, sum_f, absorbances, absorbances_back, quantiles, noise)",
+    ..AROUND
+};
+
 const fn surroundings(
     modules: &'static [&'static str],
+    around: &'static SmallTexture,
     passes: &'static [Pass],
     resolve: &'static str,
 ) -> Surroundings {
@@ -194,7 +206,7 @@ const fn surroundings(
         parameters: "ahead: PeelnetAhead",
         modules,
         before: BEFORE,
-        around: Some(&AROUND),
+        around: Some(around),
         passes,
         resolve,
     }
@@ -214,6 +226,7 @@ static ONE: Surroundings = surroundings(
         "learned::one",
         "learned::one_narrow",
     ],
+    &AROUND_ONE,
     &[pass(
         "gather",
         &["quantiles"],
@@ -237,6 +250,7 @@ static WIDE: Surroundings = surroundings(
         "learned::one",
         "learned::one_wide",
     ],
+    &AROUND_WIDE,
     &[pass(
         "gather",
         &["quantiles"],

@@ -115,6 +115,8 @@ pub struct SmallTexture {
     pub pass: Pass,
     /// What to sum of those targets over the 3 × 3 texels around each.
     pub sum: &'static str,
+    /// What to sum instead where it is made for the next frame, of what the passes keep of the pixel in the middle of each texel.
+    pub last: &'static str,
     /// A texel's value, of `sum`.
     pub write: &'static str,
     /// Stands for it where it is not drawn.

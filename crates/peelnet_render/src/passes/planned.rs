@@ -8,6 +8,7 @@ use crate::geometry::{
     fullscreen::FullscreenPass,
 };
 use crate::gpu::{Kernel, wgpu};
+use peelnet_core::absorbance::DepthWarp;
 use peelnet_scene::Camera;
 
 #[derive(Debug)]
@@ -37,7 +38,7 @@ pub(super) struct PlannedPass {
 /// What is known of the frames before.
 #[derive(Debug, Default)]
 pub(super) struct History {
-    camera: Option<Camera>,
+    last: Option<(Camera, DepthWarp)>,
     /// Frames since the first, or since the camera jumped.
     frames: u32,
 }
@@ -45,15 +46,25 @@ pub(super) struct History {
 /// Frames after which a still image that is made from frame to frame has settled.
 const SETTLED: u32 = 12;
 
+/// Of a warped range of 2, what depths may move in it from frame to frame: a bin of what is seen around a pixel.
+const STRETCHED: f64 = 0.125;
+
 impl History {
-    fn next(&mut self, camera: &Camera) {
-        let is_next = self.camera.is_some_and(|last| !camera.is_cut_from(&last));
+    /// A camera that jumped is a cut, and so is a part that enters the frame where that stretches what all depths are mapped to.
+    fn next(&mut self, camera: &Camera, warp: DepthWarp) {
+        let is_next = self.last.is_some_and(|(last, before)| {
+            let extent = f64::from(camera.far / camera.near);
+            let mut depths =
+                (0..=32).map(|k| f64::from(camera.near) * extent.powf(f64::from(k) / 32.0));
+            let is_near = |depth| (warp.cut(depth) - before.cut(depth)).abs() < STRETCHED;
+            !camera.is_cut_from(&last) && depths.all(is_near)
+        });
         self.frames = if is_next {
             self.frames.saturating_add(1)
         } else {
             0
         };
-        self.camera = Some(*camera);
+        self.last = Some((*camera, warp));
     }
 }
 
@@ -114,7 +125,8 @@ impl Compositor for Planned {
         for buffer in &self.cleared {
             cx.recorder.encoder().clear_buffer(buffer, 0, None);
         }
-        self.history.next(cx.camera);
+        let warp = cx.scene.depth_warp(cx.camera);
+        self.history.next(cx.camera, warp);
         for p in self.drawn() {
             match &p.work {
                 Work::Pixels(resolve) => cx.resolve(resolve),

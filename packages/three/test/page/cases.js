@@ -142,6 +142,43 @@ export async function firstFrame( backend, { model: name } ) {
 
 }
 
+/**
+ * A pass that learns from its last frames: how far its first frame is from one with the small pass, the errors of both and of its fifteenth frame,
+ * and how far the first frame after a jump of the camera is from one with the small pass.
+ */
+export async function lastFrame( backend ) {
+
+	const renderer = await makeRenderer( backend );
+	const scene = scenes.fifty();
+	const camera = scenes.perspective( aspect );
+	const model = await modelOf( 'one' );
+	const problems = [];
+	const node = peelnetPass( scene, camera, { model, range: 'last', onProblem: ( message ) => problems.push( message ) } );
+	const small = async () => ( await drawn( renderer, scene, camera, { model }, 1 ) ).image;
+	const before = await small();
+	const exact = await peeled( renderer, scene, camera );
+	const first = errors( await imageOf( renderer, node, 1 ), before );
+	const settled = errors( await imageOf( renderer, node, 15 ), exact.image );
+
+	camera.position.x += 1;
+	camera.lookAt( 0, 0, 0 );
+	camera.updateMatrixWorld();
+
+	const jumped = errors( await imageOf( renderer, node, 1 ), await small() );
+
+	camera.position.x += 0.01;
+	camera.updateMatrixWorld();
+
+	// Made from the frame before: as the small pass shows it, but not the same.
+	const moved = errors( await imageOf( renderer, node, 1 ), await small() );
+
+	node.dispose();
+	renderer.dispose();
+
+	return { first, settled, before: errors( before, exact.image ), jumped, moved, problems };
+
+}
+
 /** How far the image is from that of the same objects in the opposite order, and from one drawn with three.js's sorting off. */
 export async function order( backend, { model: name } ) {
 
