@@ -62,7 +62,7 @@ fn pixels_are_told_what_is_seen_around_them() {
         seen_behind_nearest(&slabs::points(&points, &warp))
     };
     let all_tiles = || [0, 1].into_iter().flat_map(|y| [0, 1, 2].map(|x| [x, y]));
-    let tiles = |seen: &dyn Fn([u32; 2]) -> [f64; one::TILE_BINS]| {
+    let tiles = |seen: &dyn Fn([u32; 2]) -> one::Seen| {
         Tiles::new(SIZE, &all_tiles().map(|tile| (tile, seen(tile))).collect())
     };
     let small = tiles(&|[x, _]| seen(8 * x + 4));

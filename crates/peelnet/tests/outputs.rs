@@ -170,13 +170,16 @@ fn a_pipe_without_a_reader_is_an_error() {
     assert!(said.contains("pipe"), "{said}");
 }
 
-/// A program that asks for JSON gets it, or an error.
+/// Programs that start others open `/dev/null` for reading, too, where they want none of what is printed.
 #[cfg(target_os = "linux")]
 #[test]
-fn a_closed_stdout_is_an_error_of_json() {
+fn json_that_nobody_wants_is_no_error() {
     let folder = Folder::new(&[]);
     folder.prints("extract --synthetic 3000 --out d");
-    let line = format!("'{}' inspect d --json >&-", env!("CARGO_BIN_EXE_peelnet"));
+    let line = format!(
+        "'{}' inspect d --json 1<>/dev/null",
+        env!("CARGO_BIN_EXE_peelnet")
+    );
     let mut shell = std::process::Command::new("sh");
     let output = shell
         .args(["-c", &line])
@@ -184,8 +187,7 @@ fn a_closed_stdout_is_an_error_of_json() {
         .output();
     let output = output.unwrap();
     let said = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(1), "{said}");
-    assert!(said.contains("stdout is closed"), "{said}");
+    assert_eq!(output.status.code(), Some(0), "{said}");
 }
 
 /// Until a signal has ended a command that nobody waits for: a second is promised, and machines that run tests are slow.

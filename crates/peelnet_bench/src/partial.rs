@@ -19,6 +19,7 @@ pub struct Partial {
 #[derive(Debug, Serialize, Deserialize)]
 struct Kept {
     plan: serde_json::Value,
+    #[serde(deserialize_with = "crate::records::checked")]
     rows: Vec<Row>,
 }
 

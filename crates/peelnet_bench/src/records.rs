@@ -97,7 +97,7 @@ impl Row {
 }
 
 /// Rows with values that a measurement can have, one for each method and view.
-fn checked<'de, D: Deserializer<'de>>(rows: D) -> Result<Vec<Row>, D::Error> {
+pub(crate) fn checked<'de, D: Deserializer<'de>>(rows: D) -> Result<Vec<Row>, D::Error> {
     let rows = Vec::<Row>::deserialize(rows)?;
     let mut known = HashSet::new();
     for (k, row) in rows.iter().enumerate() {

@@ -9,6 +9,7 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use crate::error::DatasetError;
+use crate::manifest::Part;
 
 /// The type of a column's values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -29,6 +30,10 @@ enum Allowed {
     ZeroToOne,
     /// The index of the part that the row is in.
     PartIndex,
+    /// Below the width of its frames.
+    BelowWidth,
+    /// Below their height.
+    BelowHeight,
 }
 
 impl Allowed {
@@ -41,7 +46,7 @@ impl Allowed {
                 (least, f32::MAX, "it must be a finite number above 0")
             }
             Self::NotNegative => (0.0, f32::MAX, "it must be a finite number not below 0"),
-            Self::Any | Self::PartIndex => (f32::MIN, f32::MAX, "it must be a finite number"),
+            _ => (f32::MIN, f32::MAX, "it must be a finite number"),
         }
     }
 }
@@ -166,9 +171,9 @@ columns! {
     /// Index of the work item (scene × copy × view) in the whole dataset.
     View view U32 u32 "1" PartIndex,
     /// Pixel column, 0 at the left.
-    X x U32 u32 "pixels" Any,
+    X x U32 u32 "pixels" BelowWidth,
     /// Pixel row, 0 at the top.
-    Y y U32 u32 "pixels" Any,
+    Y y U32 u32 "pixels" BelowHeight,
     /// Rank of the fragment from the front, 0 for the nearest.
     Layer layer U32 u32 "1" Any,
     /// Red radiance, un-premultiplied, linear.
@@ -305,14 +310,14 @@ impl FragmentBatch {
     }
 
     /// Finds the first value of a column, from row `start` on, that is not allowed. `first_row` is the number of that row in its part,
-    /// counted from 0; `view` is the part's index, which the `view` column must repeat. `path` is named in the error.
+    /// counted from 0; the `view` column must repeat the part's index, and places lie in its frame. `path` is named in the error.
     pub(crate) fn check_column(
         &self,
         path: &Path,
         column: Column,
         start: usize,
         first_row: u64,
-        view: u32,
+        part: &Part,
     ) -> Result<(), DatasetError> {
         let allowed = column.allowed();
         let (bad, allowed) = match self.column(column) {
@@ -321,17 +326,21 @@ impl FragmentBatch {
                 let good = |v| v >= least && v <= most;
                 (first_bad(&values[start..], good), allowed)
             }
-            ColumnSlice::U32(values) => match allowed {
-                Allowed::PartIndex => (
-                    first_bad(&values[start..], |v| v == view),
-                    "it must be the index of the part",
-                ),
-                Allowed::AboveZero => (
-                    first_bad(&values[start..], |v| v > 0),
-                    "it must be at least 1",
-                ),
-                _ => return Ok(()),
-            },
+            ColumnSlice::U32(values) => {
+                let (least, end, allowed) = match allowed {
+                    Allowed::PartIndex => (
+                        part.index,
+                        part.index.saturating_add(1),
+                        "it must be the index of the part",
+                    ),
+                    Allowed::AboveZero => (1, u32::MAX, "it must be at least 1"),
+                    Allowed::BelowWidth => (0, part.width, "it must be below the frame's width"),
+                    Allowed::BelowHeight => (0, part.height, "it must be below the frame's height"),
+                    _ => return Ok(()),
+                };
+                let good = |v| v >= least && v < end;
+                (first_bad(&values[start..], good), allowed)
+            }
         };
         let Some((i, value)) = bad else { return Ok(()) };
         let row = first_row + i as u64 + 1;

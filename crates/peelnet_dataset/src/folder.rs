@@ -9,7 +9,7 @@ use std::io::{ErrorKind, Write as _};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use peelnet_core::files::Unfinished;
+use peelnet_core::files::{Found, Unfinished};
 
 use crate::error::DatasetError;
 use crate::hash::hash_file;
@@ -121,7 +121,7 @@ fn remove_partial(path: &Path) -> std::io::Result<()> {
 
 /// The files of the dataset in a folder, in an order in which they can be removed: those that list others last. What living writers have
 /// in `_peelnet/` is left out. The first file in the folder that is not a dataset's is an error, and so is one that is read-only.
-pub(crate) fn older_files(folder: &Path) -> Result<Vec<PathBuf>, DatasetError> {
+pub(crate) fn older_files(folder: &Path) -> Result<Vec<Found>, DatasetError> {
     let store = Folder {
         path: folder.to_owned(),
         scratch: None,
@@ -159,17 +159,23 @@ pub(crate) fn older_files(folder: &Path) -> Result<Vec<PathBuf>, DatasetError> {
     for name in names_in(folder)?.into_iter().filter(|n| n != META) {
         let path = folder.join(&name);
         let found = fs::symlink_metadata(&path).map_err(DatasetError::io(&path, "look at"))?;
+        // Before it is hashed, which takes as long as it is large.
+        let as_it_is = Found::look(&path);
         let is_as_listed = |own: &(u64, String)| {
             own.0 == found.len() && hash_file(&path).is_ok_and(|hash| hash == *own)
         };
         if !found.is_file() || !listed.get(&name).is_some_and(is_as_listed) {
             return Err(not_ours(folder, &name, None));
         }
-        files.push(path);
+        files.push(as_it_is.map_err(DatasetError::io(&path, "look at"))?);
     }
-    files.extend(control.iter().rev().map(|name| folder.join(name)));
-    let is_locked = |path: &&PathBuf| fs::metadata(path).is_ok_and(|m| m.permissions().readonly());
-    if let Some(locked) = files.iter().find(is_locked) {
+    for name in control.iter().rev() {
+        let path = folder.join(name);
+        files.push(Found::look(&path).map_err(DatasetError::io(&path, "look at"))?);
+    }
+    let mut paths = files.iter().map(Found::path);
+    let is_locked = |path: &&Path| fs::metadata(path).is_ok_and(|m| m.permissions().readonly());
+    if let Some(locked) = paths.find(is_locked) {
         let reason = "is read-only, so the dataset is not replaced; choose another folder, or let the file be written";
         return Err(DatasetError::invalid(locked, reason));
     }

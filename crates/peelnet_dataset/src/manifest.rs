@@ -18,6 +18,9 @@ pub const SCHEMA_VERSION: u32 = 2;
 /// Work items (scene × copy × view) of one dataset.
 pub const MAX_WORK_ITEMS: u32 = 1 << 16;
 
+/// Pixels of a frame.
+const MAX_PIXELS: u64 = 1 << 28;
+
 /// Bytes of a manifest, plan or record that are read. One of [`MAX_WORK_ITEMS`] parts in the format with the most files has fewer.
 const MAX_BYTES: u64 = 1 << 28;
 
@@ -223,6 +226,13 @@ impl Manifest {
         }
         if scene as usize >= self.scenes.len() {
             return Err(format!("scene {scene} is not listed"));
+        }
+        let [width, height] = [part.width, part.height];
+        let pixels = u64::from(width) * u64::from(height);
+        if pixels == 0 || pixels > MAX_PIXELS {
+            return Err(format!(
+                "a frame of {width}x{height}, and at least 1x1 and at most {MAX_PIXELS} pixels are read"
+            ));
         }
         // Files of other names are those of other parts, or lie elsewhere.
         let format = self.format;

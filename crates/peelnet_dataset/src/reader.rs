@@ -175,9 +175,8 @@ impl Dataset {
 }
 
 /// A part that is being read: checks the values and counts the rows.
-struct OpenPart {
-    index: u32,
-    expected: u64,
+struct OpenPart<'a> {
+    part: &'a Part,
     columns: Vec<Column>,
     source: Box<dyn PartSource>,
     /// The files of the columns, or the one of all; copies live as long as this.
@@ -187,8 +186,8 @@ struct OpenPart {
     is_as_recorded: bool,
 }
 
-impl OpenPart {
-    fn open(dataset: &Dataset, k: usize, columns: &[Column]) -> Result<Self, DatasetError> {
+impl<'a> OpenPart<'a> {
+    fn open(dataset: &'a Dataset, k: usize, columns: &[Column]) -> Result<Self, DatasetError> {
         let format = dataset.manifest.format;
         let part = &dataset.manifest.parts[k];
         let numbers = format.files_of(columns);
@@ -207,8 +206,7 @@ impl OpenPart {
             verified => verified,
         };
         let mut open = Self {
-            index: part.index,
-            expected: part.rows,
+            part,
             columns: columns.to_vec(),
             source: format.source(&files, columns, part.rows)?,
             files,
@@ -236,18 +234,18 @@ impl OpenPart {
         let before = table.len();
         let count = self.source.read(max, table)?;
         for (k, &column) in self.columns.iter().enumerate() {
-            table.check_column(self.shown(k), column, before, self.rows, self.index)?;
+            table.check_column(self.shown(k), column, before, self.rows, self.part)?;
         }
         self.rows += count as u64;
-        if (count == 0 && self.rows < self.expected) || self.rows > self.expected {
-            let (rows, expected) = (self.rows, self.expected);
+        if (count == 0 && self.rows < self.part.rows) || self.rows > self.part.rows {
+            let (rows, expected) = (self.rows, self.part.rows);
             let reason = format!("{rows} rows where the manifest says {expected}");
             return Err(DatasetError::changed(self.shown(0), reason));
         }
         if count == 0 && !self.is_as_recorded {
             let reason = format!(
                 "the manifest and _peelnet/parts say different things of part {}, one of them was edited; {EXTRACT_AGAIN}",
-                self.index
+                self.part.index
             );
             return Err(DatasetError::invalid(self.shown(0), reason));
         }
@@ -260,7 +258,7 @@ pub struct Batches<'a> {
     dataset: &'a Dataset,
     rows_per_batch: usize,
     parts: std::vec::IntoIter<usize>,
-    current: Option<OpenPart>,
+    current: Option<OpenPart<'a>>,
     /// Rows of the last pixel that was read, which may go on.
     held_back: FragmentBatch,
 }

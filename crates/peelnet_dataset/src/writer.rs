@@ -202,8 +202,9 @@ impl DatasetWriter {
             false => Vec::new(),
         };
         let _moving = self.replaces.then(|| self.moving());
-        for path in older {
-            std::fs::remove_file(&path).map_err(DatasetError::io(&path, "replace"))?;
+        for file in older {
+            let failed = DatasetError::io(file.path(), "replace");
+            file.remove().map_err(failed)?;
         }
         // The plan again: a first writer that gave up may have taken it away.
         self.plan.agree(&*self.store)?;
@@ -267,7 +268,7 @@ impl PartWriter<'_> {
         rows.check()?;
         let part = &mut self.part;
         for column in Column::ALL {
-            rows.check_column(&self.name, column, 0, part.rows, part.index)?;
+            rows.check_column(&self.name, column, 0, part.rows, part)?;
         }
         for (&x, &y) in rows.x.iter().zip(&rows.y) {
             let pixel = Some([x, y]);

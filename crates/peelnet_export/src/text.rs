@@ -5,11 +5,14 @@ use crate::{
     header::header,
     network::{call, weight_function},
 };
-use peelnet_core::mlp::Mlp;
+use peelnet_core::{files::thousands, mlp::Mlp};
 use peelnet_model::{Model, Recipe};
 
 /// The directive that a text in 16 bits begins with, behind its header.
 pub(crate) const ENABLE_HALVES: &str = "enable f16;\n";
+
+/// Weights of a network that a text may hold. Compilers of shaders take a time that grows with the square of them: seconds for these.
+const MOST_WEIGHTS: usize = 1 << 14;
 
 /// Random inputs of a verification, drawn evenly from the range that training saw.
 pub(crate) const RANDOM: usize = 4096;
@@ -46,6 +49,14 @@ pub fn wgsl(model: &Model) -> Result<String, ExportError> {
 /// The text in WGSL without its header.
 pub(crate) fn code(model: &Model, precision: Precision) -> Result<String, ExportError> {
     model.check()?;
+    let weights = multiply_adds(&model.mlp);
+    if weights > MOST_WEIGHTS {
+        return Err(ExportError::Refused(format!(
+            "the network has {} weights, and compilers of shaders take minutes for more than {}; train one with smaller --hidden",
+            thousands(weights as u64),
+            thousands(MOST_WEIGHTS as u64)
+        )));
+    }
     let mut parts: Vec<String> = Vec::new();
     if precision == Precision::F16 {
         parts.push(ENABLE_HALVES.into());

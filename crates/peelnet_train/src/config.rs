@@ -1,6 +1,6 @@
 //! Every hyper-parameter of a run.
 
-use peelnet_core::mlp::Activation;
+use peelnet_core::{files::counted, mlp::Activation};
 use peelnet_dataset::SplitBy;
 use peelnet_model::{PixelLoss, Recipe};
 use serde::{Deserialize, Serialize};
@@ -131,6 +131,8 @@ const MAX_ROWS: u64 = i32::MAX as u64;
 /// Weights of a network: a model file of 16 MiB, and four times that while it is trained.
 const MAX_PARAMETERS: u64 = 1 << 22;
 
+const MAX_LAYERS: usize = 16;
+
 /// A step of Adam is as long as the learning rate; shorter ones than this vanish in weights of 32 bits.
 /// Below, 32-bit weights hardly change; above, a step leaves every range of weights that can be learned.
 const LEARNING_RATES: Range<f64> = 1e-8..10.0;
@@ -196,6 +198,10 @@ impl Config {
             if !(1..=most).contains(&value) {
                 return bad(setting, value.to_string(), hint);
             }
+        }
+        if self.hidden.len() > MAX_LAYERS {
+            let given = counted(self.hidden.len() as u64, "layer");
+            return bad("hidden", given, "give at most 16 hidden layers");
         }
         if let Some(width) = self.hidden.iter().find(|w| !(2..=4096).contains(*w)) {
             return bad("hidden", width.to_string(), "give widths from 2 to 4096");
@@ -264,7 +270,7 @@ mod tests {
         let good = Config::for_recipe(Recipe::THESIS);
         good.check().unwrap();
         type Spoil = fn(&mut Config);
-        let spoiled: [(&str, Spoil); 18] = [
+        let spoiled: [(&str, Spoil); 19] = [
             ("epochs", |c| c.epochs = 0),
             ("1,000,000", |c| c.epochs = u32::MAX),
             ("batch", |c| c.batch = 0),
@@ -276,7 +282,8 @@ mod tests {
             ("max_rows", |c| c.max_rows = 0),
             ("2147483647", |c| c.max_rows = u64::MAX),
             ("2 to 4096", |c| c.hidden = vec![1_000_000_000, 8]),
-            ("4,194,304", |c| c.hidden = vec![4096; 1000]),
+            ("4,194,304", |c| c.hidden = vec![4096; 10]),
+            ("at most 16", |c| c.hidden = vec![2; 17]),
             ("buffer_rows", |c| c.buffer_rows = Some(0)),
             ("chunk", |c| c.chunk = 0),
             ("hidden", |c| c.hidden = vec![3, 0]),

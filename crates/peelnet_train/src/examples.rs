@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use peelnet_core::absorbance::DepthWarp;
 use peelnet_core::files::shown;
 use peelnet_core::methods::known::KnownFragment;
-use peelnet_core::methods::one::{Around, Quantiles, TILE, TILE_BINS, Tiles, seen_behind_nearest};
+use peelnet_core::methods::one::{Around, Quantiles, Seen, TILE, Tiles, seen_behind_nearest};
 use peelnet_core::methods::slabs::points;
 use peelnet_core::statistics::SumPrecision;
 use peelnet_dataset::{
@@ -55,7 +55,7 @@ impl View<'_> {
 
     /// The quantiles of its tiles, of each the pixel of the dataset that is nearest to the one that a renderer looks at.
     fn tiles(self, warp: &DepthWarp) -> Result<Tiles, TrainError> {
-        let mut best: BTreeMap<[u32; 2], (u32, [f64; TILE_BINS])> = BTreeMap::new();
+        let mut best: BTreeMap<[u32; 2], (u32, Seen)> = BTreeMap::new();
         for batch in self.batches() {
             let batch = batch?;
             for pixel in batch.pixels() {

@@ -17,7 +17,7 @@ pub struct OutputLock {
     path: PathBuf,
     /// Folders that were created for it, innermost first.
     created: Vec<PathBuf>,
-    _file: File,
+    file: File,
     _unfinished: Unfinished,
 }
 
@@ -66,7 +66,7 @@ impl OutputLock {
                     _unfinished: Unfinished::new(&path),
                     path,
                     created,
-                    _file: file,
+                    file,
                 });
             }
         }
@@ -75,8 +75,10 @@ impl OutputLock {
 
 impl Drop for OutputLock {
     fn drop(&mut self) {
-        // While it is still locked. A file that stays is not in the way.
-        let _ = std::fs::remove_file(&self.path);
+        // While it is still locked. A file that stays is not in the way, and another one of its name is not ours.
+        if is_at(&self.file, &self.path).unwrap_or(false) {
+            let _ = std::fs::remove_file(&self.path);
+        }
         for folder in &self.created {
             // Those that hold something now stay.
             let _ = std::fs::remove_dir(folder);
@@ -114,6 +116,17 @@ mod tests {
         // Another output is free.
         drop([&out, &other].map(|out| OutputLock::take(out).unwrap()));
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+    }
+
+    #[test]
+    fn another_file_that_came_to_have_its_name_stays() {
+        let folder = tempfile::tempdir().unwrap();
+        let [out, note] = ["net", "net.lock"].map(|name| folder.path().join(name));
+        let lock = OutputLock::take(&out).unwrap();
+        std::fs::remove_file(&note).unwrap();
+        std::fs::write(&note, "a user's own").unwrap();
+        drop(lock);
+        assert_eq!(std::fs::read(&note).unwrap(), b"a user's own");
     }
 
     /// Many threads take and drop one lock: never two hold it at once, though each removes the file.

@@ -15,6 +15,8 @@ const MAX_BYTES: u64 = 1 << 20;
 /// Hidden units of one layer, at most.
 const MAX_WIDTH: usize = 4096;
 
+const MAX_LAYERS: usize = 16;
+
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct RawFile {
@@ -116,6 +118,12 @@ impl RawDesign {
         };
         let inputs = self.inputs()?;
         let hidden = self.hidden.unwrap_or_else(|| vec![12]);
+        if hidden.len() > MAX_LAYERS {
+            return Err(format!(
+                "hidden holds {} layers; give at most {MAX_LAYERS}",
+                hidden.len()
+            ));
+        }
         if let Some(width) = hidden.iter().find(|w| !(2..=MAX_WIDTH).contains(*w)) {
             return Err(format!(
                 "hidden holds {width}; give widths from 2 to {MAX_WIDTH}"

@@ -75,12 +75,18 @@ impl Table {
         let widths: Vec<usize> = (0..self.headings.len()).map(width).collect();
         let mut text = String::new();
         for line in &lines {
-            let cells = line.iter().zip(&widths).enumerate();
-            let cells = cells.map(|(k, (cell, w))| match k {
-                0 => format!("{cell:<w$}"),
-                _ => format!("  {cell:>w$}"),
-            });
-            text.push_str(cells.collect::<String>().trim_end());
+            let start = text.len();
+            for (k, (cell, w)) in line.iter().zip(&widths).enumerate() {
+                // A width of the format language ends at 65,535.
+                let space = " ".repeat(w - cell.chars().count());
+                let parts = match k {
+                    0 => [cell, space.as_str()],
+                    _ => [space.as_str(), cell],
+                };
+                text.push_str(if k > 0 { "  " } else { "" });
+                text.extend(parts);
+            }
+            text.truncate(start + text[start..].trim_end().len());
             text.push('\n');
         }
         text
@@ -140,6 +146,17 @@ mod tests {
         let markdown = "| name | ms |\n|---|---:|\n| &lt;a\\|b> | 1 |\n";
         assert_eq!(table.markdown(), markdown);
         assert_eq!(table.plain(), "name   ms\n<a|b>   1\n");
+    }
+
+    #[test]
+    fn a_cell_may_be_wider_than_a_width_of_the_format_language() {
+        let table = Table::new(["a", "b"], [vec!["x".repeat(70_000), "1".to_owned()]]);
+        let plain = table.plain();
+        assert!(
+            plain.lines().all(|line| line.chars().count() == 70_003),
+            "{}",
+            plain.len()
+        );
     }
 
     /// A cell cannot end its row, nor move a terminal's cursor.

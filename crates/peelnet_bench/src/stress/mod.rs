@@ -139,7 +139,12 @@ pub fn stress(
             let moves = trial.moves && subject.guarantees.per_pixel;
             if let (true, Some((_, before))) = (moves, drawn.last()) {
                 let moved = [&before[1 + i], &image];
-                properties::compare_frames(moved, [&before[0], &stand.exact[0]], &mut findings);
+                properties::compare_frames(
+                    subject,
+                    moved,
+                    [&before[0], &stand.exact[0]],
+                    &mut findings,
+                );
             }
             frames.push(image);
         }
@@ -261,7 +266,7 @@ impl<'a> Stand<'a> {
             let next = self.stage.image(&mut ready, camera)?.image;
             if subject.guarantees.per_pixel {
                 let exact = [&self.exact[k - 1], &self.exact[k]];
-                properties::compare_frames([&last, &next], exact, findings);
+                properties::compare_frames(subject, [&last, &next], exact, findings);
             }
             last = next;
         }

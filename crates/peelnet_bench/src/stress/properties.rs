@@ -63,6 +63,10 @@ impl Findings {
 /// A step of an 8-bit display, which the specification grants hulls, scales and what lies behind opaque layers.
 const STEP: f64 = 1.0 / 255.0;
 
+/// Of a step of the nearest fragment's colour that one frame is off otherwise than the next, where noise that stands still hides steps: the mean
+/// difference of two numbers that are evenly spread over a step is a third of it, and no more is seen of it than the opacity.
+const UNSTEADY: f64 = 1.0 / 3.0;
+
 /// What a pixel with one fragment may err by, linear light.
 const SINGLE: f64 = 1e-4;
 
@@ -99,6 +103,16 @@ impl Subject {
     fn coverage_limit(&self, kind: &Kind) -> f64 {
         let n = kind.fragments.len() as f64;
         COVERAGE + (n + 1.0) * self.rounding() * kind.transmittance * kind.absorbance.max(1.0)
+    }
+
+    /// What the nearest fragment's colour may be off where it is kept in steps: one of them, of which its opacity is seen.
+    fn nearest_step(&self, kind: &Kind) -> f64 {
+        let nearest = kind.fragments.first();
+        let nearest = nearest.filter(|_| self.guarantees.nearest_in_steps);
+        nearest.map_or(0.0, |f| {
+            let brightest = f.color.into_iter().fold(0.0, f32::max);
+            peelnet_core::methods::one::step(brightest.into()) * f64::from(f.alpha)
+        })
     }
 
     /// Limits of what the order of drawing may change of a colour whose largest component is `shown`, and of the coverage: nothing
@@ -209,7 +223,7 @@ fn check_pixel(
         });
         let outside = outside.fold(f64::NEG_INFINITY, nan_max);
         let shown = p64[..3].iter().fold(kind.scale(), |m, &c| m.max(c));
-        let limit = STEP * shown + kind.uncertainty;
+        let limit = STEP * shown + subject.nearest_step(kind) + kind.uncertainty;
         findings.note(Property::Hull, outside, limit, place);
     }
     let colors = kind.fragments.iter().map(|f| f.color);
@@ -262,7 +276,12 @@ pub(super) fn compare_scales(images: [&Image; 2], exact: [&Image; 2], findings: 
 
 /// How much more a frame's pixels jump than the exact image's, on average over those that hold the same surfaces before and
 /// after: their exact coverage shows it. Popping is a jump of many pixels at once, where the exact image changes along a line only.
-pub(super) fn compare_frames(frames: [&Image; 2], exact: [&Image; 2], findings: &mut Findings) {
+pub(super) fn compare_frames(
+    subject: &Subject,
+    frames: [&Image; 2],
+    exact: [&Image; 2],
+    findings: &mut Findings,
+) {
     let (mut excess, mut pixels) = (0.0, 0);
     for i in 0..frames[0].pixels.len() {
         let [was, is] = exact.map(|image| image.pixels[i][3]);
@@ -272,7 +291,11 @@ pub(super) fn compare_frames(frames: [&Image; 2], exact: [&Image; 2], findings: 
         }
     }
     let mean = excess / f64::from(pixels.max(1));
-    findings.note(Property::Steady, mean, STEP, || format!("{pixels} pixels"));
+    let mut limit = STEP;
+    if subject.guarantees.nearest_in_steps {
+        limit += UNSTEADY * peelnet_core::methods::one::step(1.0);
+    }
+    findings.note(Property::Steady, mean, limit, || format!("{pixels} pixels"));
 }
 
 /// The largest change of a channel of a pixel.

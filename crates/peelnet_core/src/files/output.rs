@@ -7,7 +7,7 @@
 use super::{invalid, read_head, shown};
 use std::{
     cell::Cell,
-    collections::{BTreeMap, BTreeSet},
+    collections::BTreeMap,
     fs::{self, Metadata},
     io::{self, Write as _},
     path::{Component, Path, PathBuf, absolute},
@@ -120,6 +120,11 @@ pub fn identity(path: &Path) -> Option<(u64, u64)> {
     file_id(&fs::metadata(path).ok()?)
 }
 
+/// Device and number of what stands at a path, which is no link's target.
+fn id_at(path: &Path) -> Option<(u64, u64)> {
+    file_id(&fs::symlink_metadata(path).ok()?)
+}
+
 /// Device and number of a file.
 #[cfg(unix)]
 fn file_id(metadata: &Metadata) -> Option<(u64, u64)> {
@@ -204,6 +209,11 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let is_allowed = allowed.is_some();
     let expected = allowed.unwrap_or(found);
     let Some(file) = &expected.file else {
+        // What was asked for is there and nowhere else.
+        if is_stdout_closed() {
+            let error = io::ErrorKind::NotConnected;
+            return Err(io::Error::new(error, "stdout is closed"));
+        }
         return to_stdout(bytes);
     };
     if !is_allowed && expected.is_read_only() {
@@ -257,6 +267,36 @@ pub fn remove_replaced(path: &Path) -> io::Result<()> {
     }
 }
 
+/// A file as it was found, to be removed later if it is still that.
+#[derive(Debug)]
+pub struct Found(Output);
+
+impl Found {
+    /// What stands at a path.
+    ///
+    /// # Errors
+    /// As of [`check_file`].
+    pub fn look(path: &Path) -> io::Result<Self> {
+        Output::look(path).map(Self)
+    }
+
+    pub fn path(&self) -> &Path {
+        &self.0.path
+    }
+
+    /// Removes it.
+    ///
+    /// # Errors
+    /// A file that came or changed meanwhile, and what cannot be looked at or removed.
+    pub fn remove(&self) -> io::Result<()> {
+        let _moving = moving();
+        match Output::look(&self.0.path)?.existing == self.0.existing {
+            true => fs::remove_file(&self.0.path),
+            false => Err(changed()),
+        }
+    }
+}
+
 /// Refuses a path that [`write_whole`] refuses: a folder, a link, a device, a pipe, an address of another machine.
 ///
 /// # Errors
@@ -289,7 +329,8 @@ fn changed() -> io::Error {
     )
 }
 
-/// Whether this process began without stdout: then the standard library opens `/dev/null` there, for reading as well.
+/// Whether this process may have begun without stdout: then the standard library opens `/dev/null` there, for reading as well. Some programs
+/// that start others do the same where nobody wants what they print.
 fn is_stdout_closed() -> bool {
     const READ_AND_WRITE: &str = "2";
     let leads_to_null =
@@ -303,14 +344,8 @@ fn is_stdout_closed() -> bool {
 /// Writes to stdout.
 ///
 /// # Errors
-/// Where it is closed or cannot be written.
+/// Where it cannot be written.
 pub fn to_stdout(bytes: &[u8]) -> io::Result<()> {
-    if is_stdout_closed() {
-        return Err(io::Error::new(
-            io::ErrorKind::NotConnected,
-            "stdout is closed",
-        ));
-    }
     let mut stdout = io::stdout().lock();
     stdout.write_all(bytes).and_then(|()| stdout.flush())
 }
@@ -600,7 +635,8 @@ fn is_same(a: &Path, b: &Path) -> bool {
     a == b || identity(a).is_some_and(|found| identity(b) == Some(found))
 }
 
-static UNFINISHED: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
+/// By path, with the device and number of those that were there when they were named.
+static UNFINISHED: Mutex<BTreeMap<PathBuf, Option<(u64, u64)>>> = Mutex::new(BTreeMap::new());
 
 /// Held for reading while finished files move into place, for writing by a process that ends.
 static MOVING: RwLock<()> = RwLock::new(());
@@ -612,7 +648,7 @@ pub struct Unfinished(PathBuf);
 impl Unfinished {
     /// From now on this path is unfinished.
     pub fn new(path: &Path) -> Self {
-        lock(&UNFINISHED).insert(path.to_owned());
+        lock(&UNFINISHED).insert(path.to_owned(), id_at(path));
         Self(path.to_owned())
     }
 }
@@ -650,7 +686,11 @@ impl Drop for Moving {
 /// as soon as this returns, while other threads still work.
 pub fn remove_unfinished() {
     let guard = MOVING.write().unwrap_or_else(PoisonError::into_inner);
-    for path in &*lock(&UNFINISHED) {
+    for (path, id) in &*lock(&UNFINISHED) {
+        // Another file, which came to have this name.
+        if id.is_some() && id_at(path) != *id {
+            continue;
+        }
         // Gone already, or not ours to remove any more: both are as they should be.
         let _ = if path.is_dir() {
             fs::remove_dir_all(path)

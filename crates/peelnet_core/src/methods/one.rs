@@ -83,13 +83,20 @@ impl Quantiles {
             }
             1.0
         };
-        // As they are stored, in 8 bits.
-        Self(SHARES.map(|share| (at(share) * 255.0 + 0.5).floor() / 255.0))
+        Self(SHARES.map(at))
+    }
+
+    /// As they are kept, in 8 bits.
+    fn steps(&self) -> [u8; 4] {
+        self.0.map(|q| (q * 255.0 + 0.5) as u8)
     }
 }
 
 /// What is seen of a pixel behind its nearest fragment, by bins of depth.
-pub fn seen_behind_nearest(fragments: &[Point]) -> [f64; TILE_BINS] {
+pub type Seen = [f32; TILE_BINS];
+
+/// What is seen of a pixel behind its nearest fragment.
+pub fn seen_behind_nearest(fragments: &[Point]) -> Seen {
     let levels = fragments
         .iter()
         .map(|&(b, zeta, _)| NEAREST_CODE.mirrored(zeta, b));
@@ -110,7 +117,7 @@ pub fn seen_behind_nearest(fragments: &[Point]) -> [f64; TILE_BINS] {
         let (all, rest) = (bins[k] / BIN_LEVELS, (bins[k] - taken[k]).max(0.0));
         let seen = (-front).exp() - (-front - all).exp();
         front += all;
-        seen * rest / bins[k].max(1.0)
+        (seen * rest / bins[k].max(1.0)) as f32
     })
 }
 
@@ -120,13 +127,13 @@ pub struct Tiles {
     /// The last column and the last row.
     last: [u32; 2],
     /// Of tiles that have one beside them in which anything is seen, and of all others.
-    quantiles: BTreeMap<[u32; 2], Quantiles>,
-    elsewhere: Quantiles,
+    quantiles: BTreeMap<[u32; 2], [u8; 4]>,
+    elsewhere: [u8; 4],
 }
 
 impl Tiles {
     /// Of what is seen in a pixel of some tiles of a frame ([`seen_behind_nearest`]): each tile's quantiles are those of the nine around it.
-    pub fn new(frame: [u32; 2], seen: &BTreeMap<[u32; 2], [f64; TILE_BINS]>) -> Self {
+    pub fn new(frame: [u32; 2], seen: &BTreeMap<[u32; 2], Seen>) -> Self {
         let last = frame.map(|n| n.div_ceil(TILE).max(1) - 1);
         let nine = |tile: [u32; 2]| {
             (0..9).map(move |k| {
@@ -138,15 +145,23 @@ impl Tiles {
         let around = |tile: [u32; 2]| {
             let mut sum = [PRIOR / TILE_BINS as f64; TILE_BINS];
             for one in nine(tile).filter_map(|beside| seen.get(&beside)) {
-                sum.iter_mut().zip(one).for_each(|(sum, bin)| *sum += bin);
+                sum.iter_mut()
+                    .zip(one)
+                    .for_each(|(sum, &bin)| *sum += f64::from(bin));
             }
             Quantiles::of_seen(sum)
         };
-        let tiles = seen.keys().flat_map(|&tile| nine(tile));
+        let mut quantiles = BTreeMap::new();
+        for tile in seen.keys().flat_map(|&tile| nine(tile)) {
+            quantiles
+                .entry(tile)
+                .or_insert_with(|| around(tile).steps());
+        }
+        let elsewhere = Quantiles::of_seen([1.0; TILE_BINS]).steps();
         Self {
             last,
-            quantiles: tiles.map(|tile| (tile, around(tile))).collect(),
-            elsewhere: Quantiles::of_seen([1.0; TILE_BINS]),
+            quantiles,
+            elsewhere,
         }
     }
 
@@ -161,10 +176,10 @@ impl Tiles {
                 weight *= 1.0 - (place[axis] - low - far).abs();
                 (low + far).clamp(0.0, f64::from(self.last[axis])) as u32
             });
-            let Quantiles(of) = self.quantiles.get(&tile).unwrap_or(&self.elsewhere);
+            let of = self.quantiles.get(&tile).unwrap_or(&self.elsewhere);
             all.iter_mut()
                 .zip(of)
-                .for_each(|(sum, q)| *sum += weight * q);
+                .for_each(|(sum, &q)| *sum += weight * (f64::from(q) / 255.0));
         }
         Quantiles(all)
     }
@@ -245,9 +260,9 @@ fn from_unit(unit: f64) -> f64 {
     share / (1.0 - share)
 }
 
-/// How far a step of the nearest fragment's absorbance may be from the truth.
-fn slack(absorbance: f64) -> f64 {
-    2.0 * to_unit(absorbance) * MOST * (1.0 + absorbance).powi(2) / f64::from(VALUES - 1)
+/// The step of the nearest fragment's values at one of them.
+pub fn step(value: f64) -> f64 {
+    2.0 * to_unit(value) * MOST * (1.0 + value).powi(2) / f64::from(VALUES - 1)
 }
 
 /// The nearest fragment, as its targets hold it.
@@ -370,7 +385,7 @@ impl Kept {
     /// What is seen behind the nearest fragment of a finished pixel, by bins of depth, from which the next frame's quantiles can be made: by the
     /// formula, each sum taken as even between where it ends and where the one before does. Repeated on a still image, this is the
     /// deconvolution of Richardson (1972) and Lucy (1974) with bumps that follow what they find.
-    pub fn last_seen(&self) -> [f64; TILE_BINS] {
+    pub fn last_seen(&self) -> Seen {
         let rest = self.rest();
         let sums = rest.sums.iter().zip(&rest.ahead);
         let parts = sums.map(|(sum, ahead)| sum[3] * ahead.seen(formula(ahead)));
@@ -387,7 +402,7 @@ impl Kept {
         let mut before = 0.0;
         std::array::from_fn(|k| {
             let all = until((k + 1) as f64 / TILE_BINS as f64);
-            all - std::mem::replace(&mut before, all)
+            (all - std::mem::replace(&mut before, all)) as f32
         })
     }
 
@@ -396,7 +411,7 @@ impl Kept {
         let mut nearest = self.nearest();
         let all: f64 = self.sums.iter().map(|sum| sum[3]).sum();
         // All there is, as far as roundings can tell: its colour is the mean.
-        if all - nearest.absorbance <= slack(nearest.absorbance) + all / 1024.0 {
+        if all - nearest.absorbance <= step(nearest.absorbance) + all / 1024.0 {
             let mean = |c: usize| self.sums.iter().map(|sum| sum[c]).sum::<f64>() / all.max(1e-6);
             nearest.absorbance = all;
             nearest.color = [0, 1, 2].map(mean);
@@ -619,14 +634,14 @@ mod tests {
     #[test]
     fn what_is_seen_behind_the_nearest_is_in_its_bins() {
         let seen = seen_behind_nearest(&[at(2.0, 0.7), at(1.0, 0.1)]);
-        let want = (-1.0f64).exp() * -(-2.0f64).exp_m1();
+        let want = (-1.0f32).exp() * -(-2.0f32).exp_m1();
         // Levels of 1/64, and what a step of the nearest fragment's opacity leaves of it.
-        assert!((seen.iter().sum::<f64>() - want).abs() < 0.02, "{seen:?}");
+        assert!((seen.iter().sum::<f32>() - want).abs() < 0.02, "{seen:?}");
         // A step of the nearest fragment's opacity is left in its own bin.
         assert!((seen[10] + seen[11]) / want > 0.95, "{seen:?}");
         let alone = seen_behind_nearest(&[at(1.0, 0.4)]);
         // Its depth is known to half of 1/240, a thirtieth of a bin, which moves that much of it to the next.
-        assert!(alone.iter().sum::<f64>() < 0.04, "{alone:?}");
+        assert!(alone.iter().sum::<f32>() < 0.04, "{alone:?}");
     }
 
     #[test]
@@ -679,7 +694,7 @@ mod tests {
             };
             let grey = std::iter::repeat([0.5; 3]);
             let kept = Kept::gather(&fragments, grey, design, around, SumPrecision::Exact);
-            Quantiles::of_seen(kept.last_seen())
+            Quantiles::of_seen(kept.last_seen().map(f64::from))
         };
         let apart = |Quantiles(a): Quantiles| {
             let differences = a.iter().zip(right.0).map(|(a, b)| (a - b).abs());
@@ -712,7 +727,7 @@ mod tests {
     #[test]
     fn tiles_see_what_is_around_them() {
         let seen = seen_behind_nearest(&[at(1.0, 0.1), at(1.0, 0.3), at(1.0, 0.5)]);
-        let frame = |columns, seen: &[[f64; TILE_BINS]]| {
+        let frame = |columns, seen: &[Seen]| {
             let places = (0..).map(|k| [k % columns, k / columns]);
             let rows = seen.len() as u32 / columns;
             let tiles = places.zip(seen.iter().copied()).collect();

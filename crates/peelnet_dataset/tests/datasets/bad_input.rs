@@ -99,6 +99,12 @@ fn contents_that_are_none() {
         (3, "0", ["row 4,", "fragment_count", "at least 1"]),
         (4, "-0.1", ["row 4,", "transmittance", "from 0 to 1"]),
         (5, "3", ["row 4,", "view", "index of the part"]),
+        (6, "4000", ["row 4,", "column x", "below the frame's width"]),
+        (
+            7,
+            "4000",
+            ["row 4,", "column y", "below the frame's height"],
+        ),
         (9, "-inf", ["row 4,", "column r", "finite"]),
         (13, "nan", ["row 4,", "far", "above 0"]),
         (6, "x", ["line 5,", "column x", "\"x\" is not a number"]),

@@ -104,6 +104,8 @@ pub struct Guarantees {
     pub own_share: f64,
     /// Fragments are rounded before they are composited, by its CPU reference too.
     pub rounds_fragments: bool,
+    /// The nearest fragment's colour is kept in the steps of [`one`](peelnet_core::methods::one::step), hidden by noise.
+    pub nearest_in_steps: bool,
     /// A fragment's weight is a formula of its own depth and opacity (McGuire & Bavoil 2013).
     pub own_weight: bool,
     /// It takes a pass over the geometry for every layer or two: pixels of many layers take as many.
@@ -128,6 +130,7 @@ impl Guarantees {
         apart: false,
         own_share: 0.0,
         rounds_fragments: false,
+        nearest_in_steps: false,
         own_weight: false,
         peels: false,
     };

@@ -113,7 +113,7 @@ fn a_view_in_two_datasets_would_count_twice() {
         ..scene(name, false)
     });
     let write = |name: &str, scenes: &[SceneEntry], layers| {
-        write_views(&folder.path().join(name), 3, scenes.to_vec(), |view| {
+        write_views(&folder.path().join(name), SIDE, scenes.to_vec(), |view| {
             stacks(view, layers)
         })
     };

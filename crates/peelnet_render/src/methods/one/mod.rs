@@ -19,6 +19,11 @@ fn is_framed(spec: &MethodSpec) -> bool {
     RANGE.word(spec) == "frame"
 }
 
+/// Whether the last frame says where depths are.
+fn from_last(spec: &MethodSpec) -> bool {
+    RANGE.word(spec) == "last"
+}
+
 /// What a method keeps.
 fn design(spec: &MethodSpec) -> Design {
     if spec.name().ends_with("wide") {
@@ -78,7 +83,7 @@ fn passes(p: &mut Passes<'_>) {
     };
     let kept = p.described(surroundings.passes[0].targets);
     let around = surroundings.around.filter(|_| !is_framed);
-    let from_last = RANGE.word(p.on.spec) == "last";
+    let from_last = from_last(p.on.spec);
     let quantiles = around.map(|around| {
         let small = around.pass.targets.iter();
         let small = small.map(|target| Target::described(target).every(around.every));
