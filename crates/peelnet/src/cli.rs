@@ -433,10 +433,10 @@ pub struct RecommendArgs {
     /// Scene file, or name of a shipped scene
     #[arg(value_name = "SCENE")]
     pub scene: PathBuf,
-    /// Longest frame time, milliseconds
+    /// Longest frame time, milliseconds, in the scene's slowest view
     #[arg(long, value_name = "T", value_parser = positive)]
     pub budget_ms: Option<f64>,
-    /// Largest mean squared error against the exact image, linear light
+    /// Largest mean squared error against the exact image, linear light, in the scene's worst view
     #[arg(long, value_name = "E", value_parser = positive)]
     pub max_error: Option<f64>,
     /// Most bytes per pixel, in addition to the colour target

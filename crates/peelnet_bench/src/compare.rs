@@ -186,7 +186,7 @@ fn prepare<'a>(
         let mut ready = None;
         if method.method().cpu_only.is_none() {
             match stage.ready(method, plan.options(method)) {
-                Err(e) if plan.lenient && e.is_too_large() && !entries.is_empty() => {
+                Err(e) if plan.lenient && e.is_of_method() && !entries.is_empty() => {
                     watch.left_out(scene, &name, &e.reason());
                     continue;
                 }
@@ -194,6 +194,10 @@ fn prepare<'a>(
             }
         } else if plan.samples > 1 {
             let why = "it is composited on the CPU, of one sample a pixel";
+            watch.left_out(scene, &name, why);
+            continue;
+        } else if stage.scene.transparency_scale < 1.0 {
+            let why = "it is composited on the CPU, at full resolution";
             watch.left_out(scene, &name, why);
             continue;
         }
@@ -232,7 +236,7 @@ fn draw(
             (None, None) => unreachable!("the exact method has passes"),
         };
         let frame = match drawn {
-            Err(e) if plan.lenient && e.is_too_large() && !rows.is_empty() => {
+            Err(e) if plan.lenient && e.is_of_method() && !rows.is_empty() => {
                 watch.left_out(scene, name, &e.reason());
                 entries.remove(rows.len());
                 continue;

@@ -52,7 +52,7 @@ impl Pairs {
     ) -> Result<Option<Self>, EvalError> {
         let surfaces = stage.surfaces(size, samples);
         match surfaces.and_then(|mut surfaces| stage.image(&mut surfaces, camera)) {
-            Err(e) if e.is_too_large() => Ok(None),
+            Err(e) if e.is_of_method() => Ok(None),
             frame => Ok(Some(Self::from_surfaces(&frame?.image))),
         }
     }

@@ -62,14 +62,14 @@ impl EvalError {
         }
     }
 
-    /// Whether it is memory that a frame lacks: another adapter, or a smaller frame, has it.
-    pub(crate) fn is_too_large(&self) -> bool {
+    /// Whether it is of a method alone: memory that a frame lacks, which another adapter, or a smaller frame, has; or what a scene holds.
+    pub(crate) fn is_of_method(&self) -> bool {
         let Self::At { source, .. } = self else {
             return false;
         };
         matches!(
             source.downcast_ref(),
-            Some(RenderError::Gpu(TooLarge { .. } | OutOfMemory { .. }))
+            Some(RenderError::Gpu(TooLarge { .. } | OutOfMemory { .. }) | RenderError::Scene(_))
         )
     }
 }

@@ -16,12 +16,14 @@ pub enum Mean {
     Geometric,
     /// Every view counts by its error: one bad scene is not outweighed by many good ones.
     Arithmetic,
+    /// The view with the largest error, and the one that takes longest.
+    Worst,
 }
 
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Point {
     pub method: String,
-    /// Mean of `mse_linear`, at least [`EXACT_MSE`].
+    /// Mean or largest of `mse_linear`, at least [`EXACT_MSE`].
     pub error: f64,
     /// Geometric mean of the frame time as a ratio to [`BASE`]'s; milliseconds where that was not drawn.
     pub time: f64,
@@ -63,17 +65,22 @@ pub fn untimed<'a>(rows: &Rows<'a>) -> Vec<(&'a str, &'static str)> {
     methods.filter_map(|m| Some((m, why(m)?))).collect()
 }
 
-/// The points of rows, by time; times are always geometric means. Methods without a time are left out.
+/// The points of rows, by time; times are geometric means, or those of the slowest view. Methods without a time are left out.
 pub fn points(rows: &Rows<'_>, kind: Mean) -> Vec<Point> {
-    let base = rows.of_method(BASE).time_ms().unwrap_or(1.0);
+    let time = |of: &Rows<'_>| match kind {
+        Mean::Worst => of.0.iter().filter_map(|r| r.time_ms).reduce(f64::max),
+        Mean::Geometric | Mean::Arithmetic => of.time_ms(),
+    };
+    let base = time(&rows.of_method(BASE)).unwrap_or(1.0);
     let point = |method: &str| {
         let own = rows.of_method(method);
-        let time_ms = own.time_ms()?;
+        let time_ms = time(&own)?;
         Some(Point {
             method: method.to_owned(),
             error: match kind {
                 Mean::Geometric => own.error()?,
-                Mean::Arithmetic => mean(own.0.iter().map(|r| r.mse_linear.max(EXACT_MSE)))?,
+                Mean::Arithmetic => mean(own.errors())?,
+                Mean::Worst => own.errors().reduce(f64::max)?,
             },
             time: time_ms / base,
             time_ms,

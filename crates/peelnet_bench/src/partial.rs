@@ -141,9 +141,9 @@ mod tests {
         let dir = tempfile::tempdir().unwrap();
         let plan = json!({"size": [4, 4], "methods": ["a"]});
         let mut first = Partial::resume(dir.path(), plan.clone()).unwrap();
-        let rows = [(0, 2.0), (0, 3.0), (1, 4.0)].map(|(view, mse)| Row {
+        let rows = [(0, "a", 2.0), (0, "b", 3.0), (1, "a", 4.0)].map(|(view, method, mse)| Row {
             view,
-            ..row("s", "a", mse)
+            ..row("s", method, mse)
         });
         first.push(rows.to_vec()).unwrap();
         let second = Partial::resume(dir.path(), plan.clone()).unwrap();

@@ -1,5 +1,6 @@
 //! The best method within a budget.
 
+use peelnet_render::MethodSpec;
 use peelnet_scene::Scene;
 
 use crate::{
@@ -11,9 +12,9 @@ use crate::{
 /// What must hold; `None` sets no bound.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Budget {
-    /// Frame time, milliseconds.
+    /// Frame time, milliseconds, in the view that takes longest.
     pub ms: Option<f64>,
-    /// Mean squared error, linear light.
+    /// Mean squared error, linear light, in the view where it is largest.
     pub error: Option<f64>,
     /// Bytes a pixel, in the view that takes most.
     pub bytes: Option<f64>,
@@ -26,12 +27,18 @@ pub struct Recommendation<'a> {
     pub why: String,
 }
 
-/// The points of a scene among the rows; where it is not among them those over all scenes, and a warning that says so.
+/// The points of a scene among the rows, of its worst view; where it is not among them those over all scenes, and a warning that says so. Methods
+/// that cannot draw it are left out.
 pub fn points_for(rows: &[Row], scene: &Scene) -> (Vec<Point>, Option<String>) {
+    let draws = |row: &&Row| {
+        let spec = row.method.parse::<MethodSpec>();
+        spec.is_ok_and(|spec| spec.check_scene(scene).is_ok())
+    };
+    let rows: &[Row] = &rows.iter().filter(draws).cloned().collect::<Vec<_>>();
     // Rows of before there was a hash, and scenes that are built in code, have none.
     let is_own = |row: &&Row| row.scene_content == scene.content && !scene.content.is_empty();
     let own: Vec<Row> = rows.iter().filter(is_own).cloned().collect();
-    let own = points(&Rows::new(&own), Mean::Geometric);
+    let own = points(&Rows::new(&own), Mean::Worst);
     if !own.is_empty() {
         return (own, None);
     }

@@ -2,7 +2,10 @@
 
 use crate::Row;
 use peelnet_render::role;
-use std::collections::BTreeMap;
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    sync::Arc,
+};
 
 /// Errors below count as this: a mean squared error of (1e-5)², the agreement that exact methods are held to, in linear
 /// light. It keeps geometric means and logarithmic axes finite.
@@ -62,15 +65,29 @@ impl Bytes {
 
 /// Some rows. Their means are `None` where a row lacks the value, and of no row.
 #[derive(Clone, Debug)]
-pub struct Rows<'a>(pub Vec<&'a Row>);
+pub struct Rows<'a>(pub Vec<&'a Row>, Judged<'a>);
+
+/// Scenes and views in which a method errs. Where none does, as of one layer, an error of 0 would take any mean of ratios down.
+type Judged<'a> = Arc<BTreeSet<(&'a str, u32)>>;
 
 impl<'a> Rows<'a> {
     pub fn new(rows: &'a [Row]) -> Self {
-        Self(rows.iter().collect())
+        let err = rows.iter().filter(|r| r.mse_linear > EXACT_MSE);
+        let judged = err.map(|r| (r.scene.as_str(), r.view)).collect();
+        Self(rows.iter().collect(), Arc::new(judged))
     }
 
     fn filter(&self, keep: impl Fn(&Row) -> bool) -> Self {
-        Self(self.0.iter().copied().filter(|r| keep(r)).collect())
+        let kept = self.0.iter().copied().filter(|r| keep(r)).collect();
+        Self(kept, Arc::clone(&self.1))
+    }
+
+    /// Errors that count, each at least [`EXACT_MSE`].
+    pub fn errors(&self) -> impl Iterator<Item = f64> {
+        let is_judged =
+            |r: &&&Row| self.1.is_empty() || self.1.contains(&(r.scene.as_str(), r.view));
+        let judged = self.0.iter().filter(is_judged);
+        judged.map(|r| r.mse_linear.max(EXACT_MSE))
     }
 
     pub fn of_method(&self, method: &str) -> Self {
@@ -102,9 +119,9 @@ impl<'a> Rows<'a> {
         geometric_mean(self.values(|r| r.time_ms)?)
     }
 
-    /// Geometric mean of `mse_linear`, each at least [`EXACT_MSE`].
+    /// Geometric mean of `mse_linear`, each at least [`EXACT_MSE`], of the views in which any method errs.
     pub fn error(&self) -> Option<f64> {
-        geometric_mean(self.0.iter().map(|r| r.mse_linear.max(EXACT_MSE)))
+        geometric_mean(self.errors())
     }
 
     /// The error of a method; `None` of an exact one.
@@ -202,5 +219,21 @@ pub(crate) mod tests {
         assert!(close(all.time_ratio("x", MOMENTS), 1.5));
         assert!(close(all.time_ratio("x", WEIGHTED), 3.0));
         assert_eq!(all.time_ratio("x", BASE), None);
+    }
+
+    /// A view that all methods draw exactly takes no mean of errors down.
+    #[test]
+    fn views_without_errors_do_not_count() {
+        let mut rows = Vec::new();
+        for (view, errors) in [(0, [4.0, 16.0]), (1, [0.0, 0.0])] {
+            let methods = [MOMENTS, "other"].into_iter().zip(errors);
+            rows.extend(methods.map(|(method, mse)| Row {
+                view,
+                ..row("s", method, mse)
+            }));
+        }
+        let rows = Rows::new(&rows);
+        assert_eq!(rows.of_method("other").0.len(), 2);
+        assert!((rows.error_ratio("other", MOMENTS).unwrap() - 4.0).abs() < 1e-9);
     }
 }

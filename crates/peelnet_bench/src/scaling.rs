@@ -92,7 +92,7 @@ pub fn measure(
                 watch.drawn(&scene.name, &name);
                 match first {
                     // Memory is what grows: that it ends is a result.
-                    Err(e) if e.is_too_large() => e.reason(),
+                    Err(e) if e.is_of_method() => e.reason(),
                     first => {
                         ready.push(first?);
                         continue;

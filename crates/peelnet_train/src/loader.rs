@@ -51,14 +51,21 @@ impl TrainingData {
             let rows = plan.dataset.rows;
             return Err(TrainError::no_examples(&plan.source, config.recipe, rows));
         }
-        // A split that leaves a subset without examples is dropped: a handful of pixels may all fall on one side. Then the trainer draws
-        // examples.
         if lacking(&data, config).is_some() {
+            // Scenes whose share of the rows holds no example of a subset are not set aside: pixels of all scenes are, and all are named as
+            // trained on.
+            if matches!(plan.split, DataSplit::Scenes { .. }) {
+                let split = SplitBy::Pixel;
+                let by_pixel = Config {
+                    split,
+                    ..config.clone()
+                };
+                return Self::from_datasets(&by_pixel, datasets);
+            }
+            // A handful of pixels may all fall on one side. Then the trainer draws examples.
             data.subsets = None;
         }
-        // Scenes whose share of the rows holds no example of a subset are not set aside.
-        data.split = Some(plan.split)
-            .filter(|split| data.subsets.is_some() || matches!(split, DataSplit::Pixels { .. }));
+        data.split = Some(plan.split);
         (data.source, data.dataset) = (plan.source, Some(plan.dataset));
         Ok(data)
     }

@@ -3,7 +3,7 @@ use crate::cli::RecommendArgs;
 use peelnet::Failure;
 use peelnet_bench::{
     compare::Plan,
-    front::{Point, untimed},
+    front::{BASE, Point, untimed},
     recommend::{Budget, points_for},
     rows::Rows,
 };
@@ -40,12 +40,14 @@ pub(super) fn run(context: &Context<'_>, args: &RecommendArgs) -> Result<(), Fai
     let chosen = budget.choose(&points).map_err(Failure::failed)?;
     let untimed = untimed(&Rows::new(rows));
     let adapter = &results.machine.adapter;
+    let has_base = rows.iter().any(|row| row.method == BASE);
     let line = |p: &Point| {
+        let ratio = format!(" ({:.2} x hardware blending)", p.time);
         format!(
-            "{}: {:.2} ms ({:.2} x hardware blending), {}, {:.0} bytes a pixel",
+            "{}: {:.2} ms{}, {}, {:.0} bytes a pixel",
             p.method,
             p.time_ms,
-            p.time,
+            if has_base { &ratio } else { "" },
             p.error_text(),
             p.bytes.most
         )

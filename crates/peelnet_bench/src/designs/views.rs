@@ -265,7 +265,7 @@ fn peel_one(
     })?;
     if let Some(pairs) = Pairs::where_they_fit(stage, size, 1, camera)? {
         match stage.draw(&exact_method(), MethodOptions::sized(size), camera) {
-            Err(e) if e.is_too_large() => {}
+            Err(e) if e.is_of_method() => {}
             image => {
                 let image = image?;
                 view.shown = Some(Shown { image, pairs });
@@ -275,7 +275,8 @@ fn peel_one(
     Ok(view)
 }
 
-/// Errors on all views as ratios to those of `moments` and `kbuffer`. Views that `moments` draws exactly count as its least error.
+/// Errors on all views as ratios to those of `moments` and `kbuffer`, but for views that the design and the other method draw exactly. Views that
+/// `moments` alone draws exactly count as its least error.
 pub fn score(
     views: &[View],
     own: &[Measured],
@@ -284,8 +285,9 @@ pub fn score(
 ) -> Score {
     let least = |m: &Measured| m.mse_linear.max(EXACT_MSE);
     let ratio = |base: &[Measured]| {
-        let ratios = own.iter().zip(base).map(|(a, b)| least(a) / least(b));
-        geometric_mean(ratios)
+        let ratios = own.iter().zip(base).map(|(a, b)| [a, b].map(least));
+        let ratios = ratios.filter(|both| both.iter().any(|e| *e > EXACT_MSE));
+        geometric_mean(ratios.map(|[a, b]| a / b))
     };
     let mut scenes: BTreeMap<&str, [f64; 2]> = BTreeMap::new();
     for (view, (own, moments)) in views.iter().zip(own.iter().zip(moments)) {

@@ -225,7 +225,7 @@ pub fn measure(
             let why = match method.method().cpu_only {
                 Some(why) if plan.lenient => why.to_owned(),
                 _ => match take.measure(method, &exact, &metric) {
-                    Err(e) if plan.lenient && e.is_too_large() => e.reason(),
+                    Err(e) if plan.lenient && e.is_of_method() => e.reason(),
                     measured => {
                         let (row, by_frame) = measured?;
                         found.rows.push(row);

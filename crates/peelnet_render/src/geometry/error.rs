@@ -18,6 +18,9 @@ pub enum RenderError {
     /// What is not drawn, or not like that.
     #[error("{0}")]
     Refused(String),
+    /// A scene that holds what a method cannot draw.
+    #[error("{0}")]
+    Scene(String),
     /// A target that a frame cannot be drawn onto.
     #[error("the target cannot be drawn onto: {0}")]
     Target(String),

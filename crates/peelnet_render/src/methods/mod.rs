@@ -67,6 +67,7 @@ use crate::passes::{
     compositor::{Build, Compositor},
     low_resolution,
 };
+use peelnet_scene::Scene;
 
 /// Every method, in the order of lists and reports.
 pub const METHODS: &[Method] = &[
@@ -114,30 +115,43 @@ pub const METHODS: &[Method] = &[
 
 pub(crate) fn build(b: &Build<'_>) -> Result<Box<dyn Compositor>, RenderError> {
     let (spec, method) = (b.spec, b.spec.method());
-    // A scene's scale concerns estimates; the methods that judge them stay exact unless they are asked for a scale themselves.
-    let default = if method.is_exact() {
-        1.0
-    } else {
-        b.scene.scene().transparency_scale
-    };
-    let scale = SCALE.given(spec).map_or(default, |s: f64| s as f32);
-    if b.scene.tinted && (!(method.expectations.guarantees)(spec).tinted || scale < 1.0) {
+    spec.check_scene(b.scene.scene())?;
+    match spec.scale(b.scene.scene()) {
+        scale if scale < 1.0 => low_resolution::build(b, scale),
+        _ => method.build(b),
+    }
+}
+
+impl MethodSpec {
+    /// The scale of the resolution that it draws a scene at. The scene's own concerns estimates; the methods that judge them stay exact unless
+    /// they are asked for a scale themselves.
+    fn scale(&self, scene: &Scene) -> f32 {
+        let default = match self.method().is_exact() {
+            true => 1.0,
+            false => scene.transparency_scale,
+        };
+        SCALE.given(self).map_or(default, |s: f64| s as f32)
+    }
+
+    /// Whether it can draw what a scene holds.
+    ///
+    /// # Errors
+    /// Light that takes a colour, where it keeps one transmittance a pixel.
+    pub fn check_scene(&self, scene: &Scene) -> Result<(), RenderError> {
+        if !scene.is_tinted() || (self.guarantees().tinted && self.scale(scene) >= 1.0) {
+            return Ok(());
+        }
         let is_tinted = |m: &&'static Method| MethodSpec::representative(m).guarantees().tinted;
         let tinted: Vec<_> = METHODS
             .iter()
             .filter(is_tinted)
             .map(Method::usage)
             .collect();
-        return Err(RenderError::Refused(format!(
-            "{spec} keeps one transmittance a pixel, and this scene's transmission is coloured: draw it at full resolution with one of \
+        Err(RenderError::Scene(format!(
+            "{self} keeps one transmittance a pixel, and this scene's transmission is coloured: draw it at full resolution with one of \
              {}, or make transmission_color grey",
             tinted.join(", ")
-        )));
-    }
-    if scale < 1.0 {
-        low_resolution::build(b, scale)
-    } else {
-        method.build(b)
+        )))
     }
 }
 

@@ -214,3 +214,27 @@ fn whole_scenes_are_set_aside() {
     let data = TrainingData::from_datasets(&config, &[one]).unwrap();
     assert_eq!(data.split, Some(DataSplit::Pixels { scenes: 1 }));
 }
+
+/// Of scenes of a single layer nothing is learnt. Where the draw leaves nothing else for training, pixels of all scenes are set aside, and no scene
+/// is named as not trained on.
+#[test]
+fn scenes_without_examples_are_no_split() {
+    let folder = tempfile::tempdir().unwrap();
+    let scenes = ["a", "b", "c"].map(|name| scene(name, false)).to_vec();
+    let layers = |view| if view == 0 { 4 } else { 1 };
+    let dataset = write_views(folder.path(), SIDE, scenes, |view| {
+        stacks(view, layers(view))
+    });
+    for seed in 0..6 {
+        let config = Config {
+            seed,
+            held_out: 1.0 / 3.0,
+            validation: 1.0 / 3.0,
+            ..Config::for_recipe(Recipe::MEDIUM)
+        };
+        let data = TrainingData::from_datasets(&config, std::slice::from_ref(&dataset)).unwrap();
+        assert_eq!(data.split, Some(DataSplit::Pixels { scenes: 3 }), "{seed}");
+        let reference = data.dataset.unwrap();
+        assert_eq!((reference.scenes.len(), reference.set_aside.len()), (3, 0));
+    }
+}

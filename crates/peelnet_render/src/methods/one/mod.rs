@@ -47,10 +47,13 @@ pub(super) const METHOD: Method = one(
     "one geometry pass: the nearest fragment with its colour, and three sums; 32 bytes a pixel, no network",
 );
 
-pub(super) const WIDE: Method = one(
-    "one-wide",
-    "the same with six sums, 64 bytes a pixel: more than WebGPU promises",
-);
+pub(super) const WIDE: Method = Method {
+    expectations: expectations::WIDE,
+    ..one(
+        "one-wide",
+        "the same with six sums, 64 bytes a pixel: more than WebGPU promises",
+    )
+};
 
 pub(super) const DEEP: Method = Method {
     learned: true,
@@ -63,6 +66,7 @@ pub(super) const DEEP: Method = Method {
 
 pub(super) const DEEP_WIDE: Method = Method {
     learned: true,
+    expectations: expectations::WIDE,
     ..one(
         "deep-one-wide",
         "the same of six sums, 64 bytes a pixel: more than WebGPU promises",
