@@ -219,7 +219,7 @@ pub struct TrainArgs {
     /// The model file to write, or its address; the checkpoint of a file is the folder MODEL.checkpoint
     #[arg(long, value_name = "MODEL")]
     pub out: PathBuf,
-    /// What to train: thesis, small, medium, large, anchored-small, anchored-medium, nmt or dfaoit
+    /// What to train: thesis, small, medium, large, one, one-wide, anchored-small, anchored-medium, nmt or dfaoit
     #[arg(long, value_name = "RECIPE", default_value = "medium")]
     pub recipe: Recipe,
     /// Passes over the training rows [default: the recipe's]
