@@ -63,8 +63,8 @@ pub fn fit(
     let mut outcome = match trained {
         Ok(outcome) => outcome,
         Err(error) => {
-            // What went wrong is what the user must hear of.
-            for path in loss_curves {
+            // What went wrong is what the user must hear of. Without an epoch the curves of an older model stay.
+            for path in loss_curves.iter().filter(|_| !history.is_empty()) {
                 let _ = write_curve(path, &history);
             }
             return Err(error.into());
@@ -144,6 +144,11 @@ impl ModelPlace {
             Some((folder, _)) => folder.path().join("model.safetensors"),
             None => self.out.clone().unwrap_or_default(),
         }
+    }
+
+    /// Whether the training's state stays beside it.
+    pub fn is_kept(&self) -> bool {
+        self.scratch.is_none()
     }
 
     /// Hands the finished model over.

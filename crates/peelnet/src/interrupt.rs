@@ -33,7 +33,8 @@ fn listen() -> std::io::Result<()> {
     let heard = [SIGINT, SIGTERM, SIGHUP].into_iter();
     let heard = heard.filter(|signal| ignored & (1 << (signal - 1)) == 0);
     let mut signals = signal_hook::iterator::Signals::new(heard)?;
-    std::thread::spawn(move || signals.forever().for_each(on_signal));
+    let listens = std::thread::Builder::new();
+    listens.spawn(move || signals.forever().for_each(on_signal))?;
     Ok(())
 }
 
@@ -58,19 +59,24 @@ fn on_signal(signal: i32) {
     if STOP.swap(true, Ordering::SeqCst) {
         end();
     }
-    std::thread::spawn(|| {
+    let ends = std::thread::Builder::new().spawn(|| {
         std::thread::sleep(GRACE);
         end();
     });
+    // Where the system makes no thread more, this one waits: a second signal is not heard then.
+    if ends.is_err() {
+        std::thread::sleep(GRACE);
+        end();
+    }
 }
 
 /// Ends the process while its other threads still work: nothing of theirs is waited for but files that are moving into place.
 fn end() -> ! {
     peelnet_core::files::remove_unfinished();
     let code = code().unwrap_or(1);
-    let message = std::thread::spawn(|| crate::console::error(MESSAGE));
+    let message = std::thread::Builder::new().spawn(|| crate::console::error(MESSAGE));
     let deadline = Instant::now() + MESSAGE_TIME;
-    while !message.is_finished() && Instant::now() < deadline {
+    while message.as_ref().is_ok_and(|m| !m.is_finished()) && Instant::now() < deadline {
         std::thread::sleep(Duration::from_millis(1));
     }
     #[cfg(unix)]

@@ -42,6 +42,7 @@ const WRONG_USAGE: &str = "
     train sound --out m --lr -1
     train sound --out m --split pixels
     train sound --out m --schedule cosine
+    run two.toml --out r --epochs 10000000
     export m.safetensors --out w --lang cuda
     export m.safetensors --out w --lang spirv
     export m.safetensors --out w --precision f64

@@ -173,9 +173,10 @@ pub(crate) fn older_files(folder: &Path) -> Result<Vec<Found>, DatasetError> {
         let path = folder.join(name);
         files.push(Found::look(&path).map_err(DatasetError::io(&path, "look at"))?);
     }
-    let mut paths = files.iter().map(Found::path);
+    let folders = ["", META, PARTS].map(|name| folder.join(name));
+    let folders = folders.iter().map(PathBuf::as_path);
     let is_locked = |path: &&Path| fs::metadata(path).is_ok_and(|m| m.permissions().readonly());
-    if let Some(locked) = paths.find(is_locked) {
+    if let Some(locked) = files.iter().map(Found::path).chain(folders).find(is_locked) {
         let reason = "is read-only, so the dataset is not replaced; choose another folder, or let the file be written";
         return Err(DatasetError::invalid(locked, reason));
     }

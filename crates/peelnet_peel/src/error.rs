@@ -35,6 +35,8 @@ pub enum PeelError {
         worker: String,
         source: Box<PeelError>,
     },
+    #[error("a thread could not be started: {0}")]
+    Thread(std::io::Error),
     #[error("interrupted: parts that were not finished are gone; run the command again")]
     Interrupted,
 }

@@ -194,7 +194,9 @@ pub(crate) fn stream(
     let (send, messages) = sync_channel(1);
     let (give_back, spare) = channel();
     std::thread::scope(|scope| {
-        let making = scope.spawn(move || make(&Outbox { send, spare }));
+        let making = std::thread::Builder::new();
+        let making = making.spawn_scoped(scope, move || make(&Outbox { send, spare }));
+        let making = making.map_err(PeelError::Thread)?;
         let taken = take(Feed {
             messages,
             give_back,

@@ -75,18 +75,20 @@ pub(super) fn run(context: &Context<'_>, args: &RunArgs) -> Result<(), Failure> 
         false => ([512, 384], 300_000),
     };
     let recipe = Config::for_recipe(Recipe::THESIS);
+    let config = Config {
+        // The thesis tests on a third of the rows of the scenes that it trains on.
+        split: SplitBy::Pixel,
+        seed: args.seed,
+        epochs: args.epochs.unwrap_or(recipe.epochs),
+        ..recipe
+    };
+    config.check()?;
     let mut run = Run {
         context,
         args,
         frame: args.size.unwrap_or(frame),
         rows: args.rows.unwrap_or(rows),
-        config: Config {
-            // The thesis tests on a third of the rows of the scenes that it trains on.
-            split: SplitBy::Pixel,
-            seed: args.seed,
-            epochs: args.epochs.unwrap_or(recipe.epochs),
-            ..recipe
-        },
+        config,
         scenes: &scenes,
         gpu: context.gpu()?,
         lock: OutputLock::take(&args.out.join(MODEL))?,
@@ -216,7 +218,10 @@ impl Run<'_> {
         };
         let curves = [out.join("loss.csv"), out.join("loss.svg")];
         let datasets = std::slice::from_ref(dataset);
-        let outcome = train::fit(self.context, &self.config, datasets, &options, &curves)?;
+        let outcome = {
+            let (context, config, anew) = (self.context, &self.config, train::Continues::Anew);
+            train::fit(context, config, datasets, &options, &curves, anew)?
+        };
         let note = train::text(&model, &outcome).replace('\n', "; ");
         self.done("train", note)?;
         let loss = curve_chart(&outcome.history);

@@ -26,7 +26,12 @@ pub(super) fn run(context: &Context<'_>, args: &TrainArgs) -> Result<(), Failure
     let _begun = context.begin(outputs, &[])?;
     let mut options = RunOptions::new(place.file(), context.stop);
     options.resume = args.resume;
-    let outcome = fit(context, &config, &datasets, &options, &args.loss_curve)?;
+    let continues = match place.is_kept() {
+        true => Continues::Resumed,
+        false => Continues::Anew,
+    };
+    let curves = &args.loss_curve;
+    let outcome = fit(context, &config, &datasets, &options, curves, continues)?;
     place.deliver(&outcome.model)?;
     let meta = &outcome.model.meta;
     let dataset = meta.dataset.as_ref();
@@ -77,6 +82,13 @@ fn config(args: &TrainArgs) -> Result<Config, Failure> {
     Ok(config)
 }
 
+/// What becomes of a training that is interrupted.
+#[derive(Clone, Copy)]
+pub(super) enum Continues {
+    Resumed,
+    Anew,
+}
+
 /// Trains with a progress bar and says what from.
 pub(super) fn fit(
     context: &Context<'_>,
@@ -84,6 +96,7 @@ pub(super) fn fit(
     datasets: &[Dataset],
     options: &RunOptions<'_>,
     loss_curves: &[PathBuf],
+    continues: Continues,
 ) -> Result<Outcome, Failure> {
     let console = context.console;
     let rows = datasets.iter().map(Dataset::rows).sum();
@@ -103,11 +116,15 @@ pub(super) fn fit(
     drop(bar);
     let outcome = outcome?;
     if outcome.end == End::Interrupted {
+        let state = shown(&outcome.checkpoint);
+        let then = match continues {
+            Continues::Resumed => format!("the state is in {state}, continue with --resume"),
+            Continues::Anew => "the same command begins anew".to_owned(),
+        };
         return Err(Failure::failed(format!(
-            "interrupted after epoch {} of {}; the state is in {}, continue with --resume",
+            "interrupted after epoch {} of {}; {then}",
             outcome.history.len(),
-            config.epochs,
-            shown(&outcome.checkpoint)
+            config.epochs
         )));
     }
     match outcome.resumed_from {

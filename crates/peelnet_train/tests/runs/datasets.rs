@@ -221,7 +221,7 @@ fn whole_scenes_are_set_aside() {
 fn scenes_without_examples_are_no_split() {
     let folder = tempfile::tempdir().unwrap();
     let scenes = ["a", "b", "c"].map(|name| scene(name, false)).to_vec();
-    let layers = |view| if view == 0 { 4 } else { 1 };
+    let layers = |view| if view == 0 { 7 } else { 1 };
     let dataset = write_views(folder.path(), SIDE, scenes, |view| {
         stacks(view, layers(view))
     });
