@@ -64,7 +64,7 @@ fn with_negative_numbers(command: clap::Command) -> clap::Command {
 fn set_runtime_folder() {
     use std::os::unix::process::CommandExt as _;
     const NAME: &str = "XDG_RUNTIME_DIR";
-    if std::env::var_os(NAME).is_some() {
+    if std::env::var_os(NAME).is_some_and(|folder| !folder.is_empty()) {
         return;
     }
     let mut arguments = std::env::args_os();

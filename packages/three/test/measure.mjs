@@ -45,7 +45,7 @@ await browser.page.exposeFunction( 'processorTime', () => {
 
 const { three } = await browser.run( 'versions', 'webgpu' );
 const result = { three, browser: browser.version, processor: cpus()[ 0 ].model, cores: cpus().length, runs: {} };
-const options = { models: ( process.env.PEELNET_MODELS ?? 'small,medium,large,anchored-small,one' ).split( ',' ), rounds: Number( process.env.PEELNET_ROUNDS ?? 5 ), frames: 3, requiredLimits: JSON.parse( process.env.PEELNET_LIMITS ?? '{}' ) };
+const options = { models: ( process.env.PEELNET_MODELS ?? 'small,medium,large,anchored-small,one' ).split( ',' ), ranges: ( process.env.PEELNET_RANGES ?? 'pixel,frame' ).split( ',' ), rounds: Number( process.env.PEELNET_ROUNDS ?? 5 ), frames: 3, requiredLimits: JSON.parse( process.env.PEELNET_LIMITS ?? '{}' ) };
 
 for ( const backend of [ 'webgpu', 'webgl2' ] ) {
 

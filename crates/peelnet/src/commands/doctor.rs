@@ -1,7 +1,7 @@
 use super::Context;
 use peelnet::Failure;
 use peelnet_core::files::error_line;
-use peelnet_render::gpu::adapter::{AdapterReport, INSTALL_HINT, report};
+use peelnet_render::gpu::adapter::{AdapterReport, INSTALL_HINT, report, why_none};
 use peelnet_render::gpu::{AdapterRequest, Gpu};
 use serde_json::json;
 
@@ -16,8 +16,7 @@ pub(super) fn run(context: &Context<'_>) -> Result<(), Failure> {
     let text = || {
         let mut t = format!("peelnet {version} on {os} {arch}, {cores} cores\n");
         if adapters.is_empty() {
-            t += "\nno GPU adapter: no Vulkan driver is installed\n";
-            t += INSTALL_HINT;
+            t += &format!("\nno GPU adapter: {}\n", why_none());
         }
         for adapter in &adapters {
             let is_used = used.as_ref() == Some(&adapter.name);

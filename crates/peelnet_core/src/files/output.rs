@@ -57,11 +57,17 @@ fn resolve(path: &Path) -> io::Result<PathBuf> {
     }
 }
 
-/// Where an absolute path of a folder leads: `..` and links are resolved.
+/// Where an absolute path of a folder leads: `..` and links are resolved. A path out of a folder that does not exist is an error: it leads
+/// nowhere now, and elsewhere once that folder is created.
 fn resolve_folder(path: &Path) -> io::Result<PathBuf> {
     let mut resolved = PathBuf::new();
     for part in path.components() {
         match part {
+            Component::ParentDir if !resolved.exists() => {
+                return Err(invalid(
+                    "has '..' behind a folder that does not exist; leave both out",
+                ));
+            }
             // No link is left in what precedes it.
             Component::ParentDir => {
                 resolved.pop();
@@ -625,7 +631,12 @@ pub fn check_is_folder(setting: &str, folder: &Path) -> Result<(), Refused> {
     } else if folder.exists() && !folder.is_dir() {
         Err(Refused::new(false, "is a file; name a folder"))
     } else {
-        check_folder(folder).map_err(Refused::from)
+        let leads = local(folder)
+            .and_then(absolute)
+            .and_then(|path| resolve_folder(&path));
+        leads
+            .and_then(|_| check_folder(folder))
+            .map_err(Refused::from)
     };
     refused.map_err(|refused| refused.about(setting, folder))
 }
@@ -807,7 +818,11 @@ mod tests {
             ("DIR/new/", no, "is a directory"),
             ("DIR/new/.", no, "is a directory"),
             ("DIR/deep/er/new", no, ""),
-            ("DIR/deep/../note", no, ""),
+            (
+                "DIR/deep/../note",
+                no,
+                "behind a folder that does not exist",
+            ),
             ("DIR/near/note", no, ""),
             ("DIR/near/../note", no, ""),
             ("file://DIR/note", no, ""),
@@ -834,7 +849,11 @@ mod tests {
             ("/proc/self/fd/1", no, "is a link"),
             ("/proc/self/new", no, "cannot be written"),
             ("DIR/new", appears, "another file came there"),
-            ("DIR/deep/../new", appears, "another file came there"),
+            (
+                "DIR/deep/../new",
+                appears,
+                "behind a folder that does not exist",
+            ),
             ("DIR/note", |dir| fs::remove_file(dir.join("note")), ""),
             ("DIR/empty", written, "the file changed"),
             ("DIR/note", replaced, "the file changed"),
