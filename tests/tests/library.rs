@@ -99,6 +99,29 @@ fn methods(renderer: &Renderer, size: [u32; 2]) -> Vec<(Prepared, MethodSpec)> {
     representatives().into_iter().map(ready).collect()
 }
 
+/// A method that learns from the last frame draws the small pass where there is none, or another camera's; between, it makes a frame of the one
+/// before, which is not the same.
+#[test]
+fn frames_begin_anew_after_a_jump() {
+    let gpu = gpu();
+    let size = [64, 48];
+    let scene = peelnet_scene::suite::load("cups").unwrap();
+    let renderer = Renderer::new(&gpu, &scene).unwrap();
+    let [mut small, mut last] = ["one", "one:range=last"].map(|m| prepare(&renderer, m, size));
+    let view = target(&gpu, FULL, size, 1, [0.0; 3]);
+    let frame = |method: &mut Prepared, camera: &Camera| {
+        draw(&renderer, method, camera, &Target::cleared(&view));
+        gpu.read_texture::<[f32; 4]>(&view).unwrap()
+    };
+    let here = scene.views[0];
+    for camera in [here, here.orbited(40.0)] {
+        let expected = frame(&mut small, &camera);
+        assert_eq!(frame(&mut last, &camera), expected);
+        let moved = camera.orbited(0.1);
+        assert_ne!(frame(&mut last, &moved), frame(&mut small, &moved));
+    }
+}
+
 /// Blending onto a 32-bit target adds the rounding of a product and a sum to what the image has: 2^-23 of values up to 2.
 const BLENDED: f32 = 4.0 * f32::EPSILON;
 
