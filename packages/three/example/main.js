@@ -9,11 +9,12 @@ import { peelnetPass } from '@peelnet/three';
 import small from '@peelnet/three/models/small';
 import medium from '@peelnet/three/models/medium';
 import large from '@peelnet/three/models/large';
+import one from '@peelnet/three/models/one';
 import { HEIGHT, WIDTH, errors, imageOf, makeRenderer, peeled, shown } from '../test/page/measure.js';
 import { fifty, orthographic, perspective } from '../test/page/scenes.js';
 import { sceneOf } from './glb.js';
 
-const MODELS = { small, medium, large };
+const MODELS = { small, medium, large, one };
 // An error of so many steps of 255 is white.
 const WHITE = 32;
 // Peeling waits until the camera has rested for so long.
