@@ -3,6 +3,7 @@
 use crate::{
     EvalError, Partial, Row,
     contours::Pairs,
+    front::BASE,
     json_hash,
     metrics::{differences, error_image},
     perceptual::Displayed,
@@ -156,7 +157,9 @@ pub(crate) fn compare(
     }
     let stage = Stage::new(gpu, scene)?;
     let mut entries = prepare(&stage, plan, watch)?;
-    let mut peeled = Peeled::new(gpu, scene, plan.size, true)?;
+    // Fragments of coloured transmission have no single opacity.
+    let peeled = (!scene.is_tinted()).then(|| Peeled::new(gpu, scene, plan.size, true));
+    let mut peeled = peeled.transpose()?;
     for view in left {
         let mut rows = draw(&stage, plan, view, &mut entries, &mut peeled, watch)?;
         if plan.frames > 0 {
@@ -180,18 +183,23 @@ fn prepare<'a>(
     let scene = &stage.scene.name;
     let exact = exact_method();
     let others = plan.methods.iter().filter(|m| **m != exact);
+    // Nobody named the base of the times.
+    let is_lenient = |name: &str| plan.lenient || name == BASE;
     let mut entries = Vec::new();
     for method in std::iter::once(&exact).chain(others) {
         let name = method.to_string();
         let mut ready = None;
         if method.method().cpu_only.is_none() {
             match stage.ready(method, plan.options(method)) {
-                Err(e) if plan.lenient && e.is_of_method() && !entries.is_empty() => {
+                Err(e) if is_lenient(&name) && e.is_of_method() && !entries.is_empty() => {
                     watch.left_out(scene, &name, &e.reason());
                     continue;
                 }
                 prepared => ready = Some(prepared?),
             }
+        } else if let Err(why) = method.check_scene(stage.scene) {
+            watch.left_out(scene, &name, &why.to_string());
+            continue;
         } else if plan.samples > 1 {
             let why = "it is composited on the CPU, of one sample a pixel";
             watch.left_out(scene, &name, why);
@@ -218,22 +226,23 @@ fn draw(
     plan: &Plan<'_>,
     view: usize,
     entries: &mut Vec<Entry<'_>>,
-    peeled: &mut Peeled<'_>,
+    peeled: &mut Option<Peeled<'_>>,
     watch: &mut Watch<'_>,
 ) -> Result<Vec<Row>, EvalError> {
     let scene = &stage.scene.name;
     let camera = &stage.scene.views[view];
-    let stacks = peeled.stacks(view)?;
+    let stacks = peeled.as_mut().map(|peeled| peeled.stacks(view));
+    let stacks = stacks.transpose()?;
     let pairs = Pairs::where_they_fit(stage, plan.size, plan.samples, camera)?;
     let mut exact: Option<(Image, Displayed)> = None;
     let mut rows: Vec<Row> = Vec::new();
     while let Some(entry) = entries.get_mut(rows.len()) {
         watch.check()?;
         let name = &entry.name;
-        let drawn = match (&mut entry.ready, &exact) {
-            (None, Some((image, _))) => peeled.composite(view, &entry.method, image),
-            (Some(ready), _) => stage.image(ready, camera),
-            (None, None) => unreachable!("the exact method has passes"),
+        let drawn = match (&mut entry.ready, &exact, &mut *peeled) {
+            (Some(ready), ..) => stage.image(ready, camera),
+            (None, Some((image, _)), Some(peeled)) => peeled.composite(view, &entry.method, image),
+            (None, ..) => unreachable!("the exact method has passes, and others are left out"),
         };
         let frame = match drawn {
             Err(e) if plan.lenient && e.is_of_method() && !rows.is_empty() => {
@@ -265,7 +274,9 @@ fn draw(
             picture,
             ssim: shown.ssim(displayed),
             flip: Some(shown.flip(displayed)),
-            transmittance_error: stacks.error(&entry.method, entry.model),
+            transmittance_error: stacks
+                .as_ref()
+                .and_then(|s| s.error(&entry.method, entry.model)),
             contour_pairs: pairs.as_ref().and_then(|pairs| pairs.share(&errors)),
             ..row(&frame, &against.pixels)
         };

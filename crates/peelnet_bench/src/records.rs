@@ -73,6 +73,9 @@ pub struct Row {
     pub picture: Option<String>,
 }
 
+/// Pairs of a method and a scene.
+const MOST_CELLS: usize = 1 << 18;
+
 /// Largest value of a row: errors are squares of 32-bit numbers.
 const LARGEST: f64 = 1e80;
 
@@ -99,6 +102,15 @@ impl Row {
 /// Rows with values that a measurement can have, one for each method and view.
 pub(crate) fn checked<'de, D: Deserializer<'de>>(rows: D) -> Result<Vec<Row>, D::Error> {
     let rows = Vec::<Row>::deserialize(rows)?;
+    let [methods, scenes] = [|r: &Row| r.method.clone(), |r: &Row| r.scene.clone()]
+        .map(|name| rows.iter().map(name).collect::<HashSet<String>>().len());
+    // A report has a cell for each.
+    if methods * scenes > MOST_CELLS {
+        let why = format!(
+            "{methods} methods and {scenes} scenes, of which at most {MOST_CELLS} pairs are read"
+        );
+        return Err(D::Error::custom(why));
+    }
     let mut known = HashSet::new();
     for (k, row) in rows.iter().enumerate() {
         let Row {

@@ -18,8 +18,9 @@ pub const SCHEMA_VERSION: u32 = 2;
 /// Work items (scene × copy × view) of one dataset.
 pub const MAX_WORK_ITEMS: u32 = 1 << 16;
 
-/// Pixels of a frame.
+/// Pixels of a frame, and of a side of it.
 const MAX_PIXELS: u64 = 1 << 28;
+const MAX_SIDE: u32 = 1 << 16;
 
 /// Bytes of a manifest, plan or record that are read. One of [`MAX_WORK_ITEMS`] parts in the format with the most files has fewer.
 const MAX_BYTES: u64 = 1 << 28;
@@ -229,9 +230,9 @@ impl Manifest {
         }
         let [width, height] = [part.width, part.height];
         let pixels = u64::from(width) * u64::from(height);
-        if pixels == 0 || pixels > MAX_PIXELS {
+        if pixels == 0 || pixels > MAX_PIXELS || width.max(height) > MAX_SIDE {
             return Err(format!(
-                "a frame of {width}x{height}, and at least 1x1 and at most {MAX_PIXELS} pixels are read"
+                "a frame of {width}x{height}, and at least 1x1, at most {MAX_SIDE} either way and {MAX_PIXELS} pixels are read"
             ));
         }
         // Files of other names are those of other parts, or lie elsewhere.

@@ -26,6 +26,9 @@ pub struct Model {
     pub meta: Metadata,
 }
 
+/// Layers of a network: compilers of shaders take a time that grows with the square of them.
+const MOST_LAYERS: usize = 17;
+
 impl Model {
     /// Loads a model file.
     ///
@@ -108,6 +111,12 @@ impl Model {
         self.meta.check()?;
         // The fields are public: what `Mlp::new` checked once may have changed.
         let Mlp { hidden, output, .. } = self.mlp;
+        let layers = self.mlp.layers.len();
+        if layers > MOST_LAYERS {
+            return Err(Problem(format!(
+                "the network has {layers} layers, and at most {MOST_LAYERS} are read"
+            )));
+        }
         Mlp::new(self.mlp.layers.clone(), hidden, output).map_err(Problem::shapes)?;
         for (i, layer) in self.mlp.layers.iter().enumerate() {
             let Layer { weights, bias, .. } = layer;

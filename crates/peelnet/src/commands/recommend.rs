@@ -40,7 +40,7 @@ pub(super) fn run(context: &Context<'_>, args: &RecommendArgs) -> Result<(), Fai
     let chosen = budget.choose(&points).map_err(Failure::failed)?;
     let untimed = untimed(&Rows::new(rows));
     let adapter = &results.machine.adapter;
-    let has_base = rows.iter().any(|row| row.method == BASE);
+    let has_base = points.iter().any(|point| point.method == BASE);
     let line = |p: &Point| {
         let ratio = format!(" ({:.2} x hardware blending)", p.time);
         format!(
