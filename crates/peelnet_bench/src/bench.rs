@@ -79,6 +79,12 @@ pub fn bench_watched(
     let views = scenes.iter().map(|scene| scene.first_views(plan.views));
     let checked: Result<Vec<_>, String> = views.collect();
     checked.map_err(EvalError::Unusable)?;
+    let exact_name = exact_method().to_string();
+    partial.check(|row| {
+        let mut scenes = scenes.iter().filter(|s| s.name == row.scene);
+        scenes.any(|s| (row.view as usize) < plan.views_of(s))
+            && (row.method == exact_name || names.contains(&row.method))
+    })?;
     let load_before = load();
     let left = |s: &Scene| plan.views_of(s).saturating_sub(partial.done(&s.name).len());
     let views: usize = scenes.iter().map(left).sum();

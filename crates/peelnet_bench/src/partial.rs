@@ -1,7 +1,7 @@
 //! What an interrupted comparison has measured so far.
 
 use crate::{EvalError, Row, compare::check_pictures};
-use peelnet_core::files::Kind;
+use peelnet_core::files::{Kind, printable};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest as _, Sha256};
 use std::path::{Path, PathBuf};
@@ -95,6 +95,23 @@ impl Partial {
         check_pictures(&kept.rows, folder)?;
         let path = Some(path);
         Ok(Self { kept, path })
+    }
+
+    /// Refuses rows that are not of the plan.
+    pub fn check(&self, is_planned: impl Fn(&Row) -> bool) -> Result<(), EvalError> {
+        let mut rows = self.kept.rows.iter();
+        let Some(foreign) = rows.find(|row| !is_planned(row)) else {
+            return Ok(());
+        };
+        Err(EvalError::Resume {
+            path: self.path.clone().unwrap_or_default(),
+            why: format!(
+                "it holds a row of {} on view {} of {}, which is not of this run",
+                printable(&foreign.method),
+                foreign.view,
+                printable(&foreign.scene)
+            ),
+        })
     }
 
     pub fn done(&self, scene: &str) -> Vec<u32> {

@@ -73,6 +73,9 @@ pub struct Row {
     pub picture: Option<String>,
 }
 
+/// Characters of the times of a frame's passes: of hundreds of them.
+const MOST_OF_PASSES: usize = 1 << 14;
+
 /// Pairs of a method and a scene.
 const MOST_CELLS: usize = 1 << 18;
 
@@ -87,6 +90,11 @@ impl Row {
         for (name, value) in fields.as_object().into_iter().flatten() {
             if let ("method" | "scene", Some(text)) = (&**name, value.as_str()) {
                 check_name(text).map_err(|e| format!("`{name}` {e}"))?;
+            }
+            if name == "time_by_pass" && value.as_str().is_some_and(|t| t.len() > MOST_OF_PASSES) {
+                return Err(format!(
+                    "`{name}` is longer than {MOST_OF_PASSES} characters"
+                ));
             }
             let least = if name == "ssim" { -1.0 } else { 0.0 };
             if let Some(x) = value.as_f64().filter(|x| !(least..=LARGEST).contains(x)) {

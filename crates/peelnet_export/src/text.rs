@@ -11,8 +11,8 @@ use peelnet_model::{Model, Recipe};
 /// The directive that a text in 16 bits begins with, behind its header.
 pub(crate) const ENABLE_HALVES: &str = "enable f16;\n";
 
-/// Weights of a network that a text may hold. Compilers of shaders take a time that grows with the square of them: seconds for these.
-const MOST_WEIGHTS: usize = 1 << 14;
+/// Weights of a network that a text may hold. Compilers of shaders take a time that grows with the square of them: a quarter of a minute for these.
+const MOST_WEIGHTS: usize = 1 << 13;
 
 /// Random inputs of a verification, drawn evenly from the range that training saw.
 pub(crate) const RANDOM: usize = 4096;

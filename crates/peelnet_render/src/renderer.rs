@@ -39,6 +39,8 @@ pub struct Prepared {
     status: FrameStatus,
     /// Of the last frame that was encoded onto a caller's target.
     stats: FrameStats,
+    /// Whether images are frames of a moving picture.
+    is_moving: bool,
 }
 
 #[derive(Debug)]
@@ -53,6 +55,11 @@ impl Prepared {
     /// Size of [`Renderer::image`]s from now on, width and height in pixels.
     pub const fn resize(&mut self, size: [u32; 2]) {
         self.options.size = size;
+    }
+
+    /// [`Renderer::image`]s are frames of a moving picture from now on: each is drawn once, as an engine would, and not until it has settled.
+    pub const fn set_moving(&mut self) {
+        self.is_moving = true;
     }
 
     /// Size of [`Renderer::image`]s.
@@ -93,7 +100,7 @@ impl Prepared {
     /// Whether the frame drawn last would not change if it was drawn again.
     pub(crate) fn is_settled(&self) -> bool {
         let ready = self.ready.as_ref();
-        ready.is_none_or(|ready| ready.compositor.is_settled())
+        self.is_moving || ready.is_none_or(|ready| ready.compositor.is_settled())
     }
 
     /// Where the repetitions of a frame sample its pixels.
@@ -165,6 +172,7 @@ impl Renderer {
             pending: VecDeque::new(),
             status: FrameStatus::Unknown,
             stats: FrameStats::default(),
+            is_moving: false,
         };
         let size = method.size();
         self.ready(&mut method, size, Output::Image, None)?;

@@ -19,6 +19,9 @@ use web_time::Instant;
 /// Times that a frame is drawn until it has room for all of its fragments. Two do for a frame in one tile.
 const MOST_TRIES: u32 = 8;
 
+/// Frames that are drawn until a still image has settled.
+const MOST_SETTLING: u32 = 16;
+
 impl Renderer {
     /// Draws until the frame has room for all of its fragments (and, for times, no more than it needs): onto a target, or into an image
     /// of its own.
@@ -94,8 +97,12 @@ impl Renderer {
         let points = method.points();
         for &point in &points {
             let mut drawn = self.drawn(method, (camera, point), true, None).await?;
-            while !method.is_settled() {
-                drawn = self.drawn(method, (camera, point), true, None).await?;
+            // Times stay those of the first frame: other methods' are, too.
+            for _ in 0..MOST_SETTLING {
+                if method.is_settled() {
+                    break;
+                }
+                drawn.stats = self.drawn(method, (camera, point), true, None).await?.stats;
             }
             sum.add(drawn);
             let view = method.ready.as_ref().and_then(|r| r.frame.image.as_ref());

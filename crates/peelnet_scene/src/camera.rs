@@ -80,21 +80,29 @@ impl Camera {
     /// Whether so much moved on the screen since another camera that a frame of its says nothing of this one's: a thirty-second of the frame's
     /// width, or a quarter of a depth.
     pub fn is_cut_from(&self, last: &Self) -> bool {
-        let (near, far) = (self.near / last.near, self.far / last.far);
+        if self == last {
+            return false;
+        }
+        // From where the last one stood: far from the origin 32 bits know too little of both.
+        let [own, last] = [self, last].map(|camera| Self {
+            position: camera.position - last.position,
+            target: camera.target - last.position,
+            ..*camera
+        });
         let clip_from_last =
-            self.clip_from_view(1.0) * self.view_from_world() * last.view_from_world().inverse();
-        let middle = (last.near * last.far).sqrt();
+            own.clip_from_view(1.0) * own.view_from_world() * last.view_from_world().inverse();
+        let middle = last.near.sqrt() * last.far.sqrt();
         let tangent = (0.5 * last.fov_y_degrees).to_radians().tan();
         let has_moved = |[x, y, depth]: [f32; 3]| {
-            let place = clip_from_last
-                * Vec3::new(x * tangent * depth, y * tangent * depth, -depth).extend(1.0);
+            let place = Vec3::new(x * tangent * depth, y * tangent * depth, -depth);
+            let place = clip_from_last * place.extend(1.0);
             let moved = glam::Vec2::new(place.x / place.w - x, place.y / place.w - y);
             !(moved.length() < 0.0625 && (0.8..1.25).contains(&(place.w / depth)))
         };
         let corners = [-1.0, 1.0].into_iter().flat_map(|x| [[x, -1.0], [x, 1.0]]);
         let mut places = corners.flat_map(|[x, y]| [middle, last.far].map(|depth| [x, y, depth]));
-        let is_ranged = [near, far].iter().all(|ratio| (0.8..1.25).contains(ratio));
-        !is_ranged || places.any(has_moved)
+        let ranges = [own.near / last.near, own.far / last.far];
+        !ranges.iter().all(|ratio| (0.8..1.25).contains(ratio)) || places.any(has_moved)
     }
 
     /// The camera at so many places around its target.
@@ -160,6 +168,20 @@ mod tests {
             target: Vec3::new(0.0, 0.0, z - 1.0),
             ..camera
         };
+        let far_away = |camera: Camera| Camera {
+            position: camera.position + Vec3::new(5e5, 4e6, 0.0),
+            target: camera.target + Vec3::new(5e5, 4e6, 0.0),
+            ..camera
+        };
+        let there = Camera {
+            far: 1000.0,
+            ..far_away(camera)
+        };
+        let beside = Camera {
+            position: there.position + Vec3::new(0.0, 0.0, 0.0625),
+            ..there
+        };
+        assert!(!beside.is_cut_from(&there));
         // At the corners of the middle depth 6, the picture grows by 6 / (6 - d).
         assert!(!camera.is_cut_from(&ahead(6.2)));
         for other in [

@@ -91,6 +91,7 @@ impl Take<'_, '_> {
         mut ready: Ready,
         take: &mut dyn FnMut(usize, Image) -> Result<(), EvalError>,
     ) -> Result<(), EvalError> {
+        ready.prepared.set_moving();
         for (k, moment) in self.moments.iter().enumerate() {
             self.watch.check()?;
             for (number, place) in moment.objects.iter().enumerate() {

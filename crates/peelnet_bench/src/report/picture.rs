@@ -1,12 +1,23 @@
 use crate::EvalError;
 use base64::{Engine as _, engine::general_purpose::STANDARD};
-use image::{DynamicImage, ImageFormat, imageops::FilterType};
+use image::{DynamicImage, ImageFormat, ImageReader, Limits, imageops::FilterType};
 use maud::{Markup, html};
 use std::{io::Cursor, path::Path};
 
+/// Sides of a picture: no adapter draws a larger one.
+const LONGEST: u32 = 16_384;
+
 /// A picture file; `None` where it does not exist.
 pub(crate) fn read(path: &Path) -> Result<Option<DynamicImage>, EvalError> {
-    let picture = path.exists().then(|| image::open(path)).transpose();
+    let decoded = || {
+        let mut reader = ImageReader::open(path)?.with_guessed_format()?;
+        let mut limits = Limits::default();
+        (limits.max_image_width, limits.max_image_height) = (Some(LONGEST), Some(LONGEST));
+        limits.max_alloc = Some(1 << 30);
+        reader.limits(limits);
+        reader.decode()
+    };
+    let picture = path.exists().then(decoded).transpose();
     picture.map_err(EvalError::io(path, "read the picture"))
 }
 
