@@ -123,10 +123,17 @@ pub fn check_pictures(rows: &[Row], folder: &Path) -> Result<(), EvalError> {
         let path = folder
             .join("images")
             .join(image_name(&row.scene, &row.method));
-        let Some(drawn) = row.picture.as_ref().filter(|_| path.exists()) else {
+        if !path.exists() {
             continue;
+        }
+        // Its header says the size, before anything is decoded.
+        let size = image::image_dimensions(&path);
+        let is_sized = size.is_ok_and(|size| size == (row.width, row.height));
+        let is_drawn = match &row.picture {
+            Some(drawn) if is_sized => picture_hash(&path)? == *drawn,
+            _ => is_sized,
         };
-        if picture_hash(&path)? != *drawn {
+        if !is_drawn {
             return Err(EvalError::OtherPicture(path));
         }
     }

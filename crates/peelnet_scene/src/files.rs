@@ -29,8 +29,8 @@ pub(crate) const MAX_MESH: u64 = 4 << 30;
 /// Reads the file at a path, if it is not larger than so many bytes.
 type Read<'a> = dyn Fn(&Path, u64) -> io::Result<Vec<u8>> + 'a;
 
-/// Texels of two textures joined, over those of both: 1x8192 and 8192x1 have 64 million.
-const MOST_LARGER: u64 = 64;
+/// Texels of two textures joined, over those of both and a million: 1x8192 and 8192x1 have 64 million.
+const MOST_LARGER: u64 = 2;
 
 /// Reads files, hashes those that become part of a scene, and makes textures of theirs.
 pub(crate) struct Files<'a> {
@@ -195,7 +195,7 @@ impl<'a> Files<'a> {
         let sizes = sources.map(|t| t.map_or([1, 1], |t| t.size));
         let area = |size: [u32; 2]| u64::from(size[0]) * u64::from(size[1]);
         let [a, b] = sizes;
-        let most = MOST_LARGER * (area(a) + area(b));
+        let most = MOST_LARGER * (area(a) + area(b) + (1 << 20));
         if area([0, 1].map(|k| a[k].max(b[k]))) > most {
             return Err(format!(
                 "maps of {}x{} and {}x{} texels cannot be joined; scale one to the shape of the other",

@@ -17,7 +17,7 @@ use crate::{
 };
 use image::{DynamicImage, RgbImage};
 use maud::{Markup, html};
-use std::path::Path;
+use std::{collections::HashMap, path::Path};
 
 const PICTURE_WIDTH: u32 = 256;
 
@@ -162,6 +162,7 @@ fn untimed(rows: &Rows<'_>) -> Markup {
 fn passes(rows: &Rows<'_>, points: &[Point]) -> Table {
     let line = |p: &Point| {
         let mut times: Vec<(&str, Vec<f64>)> = Vec::new();
+        let mut places: HashMap<&str, usize> = HashMap::new();
         for row in rows.of_method(&p.method).0 {
             for part in row.time_by_pass.split_whitespace() {
                 let Some((name, ms)) = part.rsplit_once('=') else {
@@ -169,10 +170,11 @@ fn passes(rows: &Rows<'_>, points: &[Point]) -> Table {
                 };
                 // A pass may be too short for the clock.
                 let ms = ms.parse().unwrap_or(0.0f64).max(1e-4);
-                match times.iter_mut().find(|(n, _)| *n == name) {
-                    Some((_, all)) => all.push(ms),
-                    None => times.push((name, vec![ms])),
+                let place = *places.entry(name).or_insert(times.len());
+                if place == times.len() {
+                    times.push((name, Vec::new()));
                 }
+                times[place].1.push(ms);
             }
         }
         let part = |(name, t): (&str, Vec<f64>)| Some(format!("{name} {:.2}", geometric_mean(t)?));
