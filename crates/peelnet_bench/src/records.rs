@@ -110,8 +110,8 @@ impl Row {
 /// Rows with values that a measurement can have, one for each method and view.
 pub(crate) fn checked<'de, D: Deserializer<'de>>(rows: D) -> Result<Vec<Row>, D::Error> {
     let rows = Vec::<Row>::deserialize(rows)?;
-    let [methods, scenes] = [|r: &Row| r.method.clone(), |r: &Row| r.scene.clone()]
-        .map(|name| rows.iter().map(name).collect::<HashSet<String>>().len());
+    let methods = rows.iter().map(|r| &r.method).collect::<HashSet<_>>().len();
+    let scenes = rows.iter().map(|r| &r.scene).collect::<HashSet<_>>().len();
     // A report has a cell for each.
     if methods * scenes > MOST_CELLS {
         let why = format!(

@@ -29,6 +29,6 @@ mod recipe;
 pub use error::{ModelError, Problem};
 pub use file::{KIND, MAX_BYTES};
 pub use metadata::{DatasetRef, FORMAT_VERSION, Input, Losses, Metadata};
-pub use model::Model;
+pub use model::{MAX_HIDDEN_LAYERS, Model};
 pub use output::{BOUNDS, Output};
 pub use recipe::{Budget, Declaration, Network, PixelLoss, Recipe};

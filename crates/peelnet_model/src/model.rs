@@ -26,8 +26,8 @@ pub struct Model {
     pub meta: Metadata,
 }
 
-/// Layers of a network: compilers of shaders take a time that grows with the square of them.
-const MOST_LAYERS: usize = 17;
+/// Hidden layers of a network, at most: compilers of shaders take a time that grows with the square of them.
+pub const MAX_HIDDEN_LAYERS: usize = 16;
 
 impl Model {
     /// Loads a model file.
@@ -112,9 +112,10 @@ impl Model {
         // The fields are public: what `Mlp::new` checked once may have changed.
         let Mlp { hidden, output, .. } = self.mlp;
         let layers = self.mlp.layers.len();
-        if layers > MOST_LAYERS {
+        if layers > MAX_HIDDEN_LAYERS + 1 {
             return Err(Problem(format!(
-                "the network has {layers} layers, and at most {MOST_LAYERS} are read"
+                "the network has {layers} layers, and at most {} are read",
+                MAX_HIDDEN_LAYERS + 1
             )));
         }
         Mlp::new(self.mlp.layers.clone(), hidden, output).map_err(Problem::shapes)?;

@@ -2,7 +2,7 @@
 
 use peelnet_core::{files::counted, mlp::Activation};
 use peelnet_dataset::SplitBy;
-use peelnet_model::{PixelLoss, Recipe};
+use peelnet_model::{MAX_HIDDEN_LAYERS, PixelLoss, Recipe};
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
@@ -131,8 +131,6 @@ const MAX_ROWS: u64 = i32::MAX as u64;
 /// Weights of a network: a model file of 16 MiB, and four times that while it is trained.
 const MAX_PARAMETERS: u64 = 1 << 22;
 
-const MAX_LAYERS: usize = 16;
-
 /// A step of Adam is as long as the learning rate; shorter ones than this vanish in weights of 32 bits.
 /// Below, 32-bit weights hardly change; above, a step leaves every range of weights that can be learned.
 const LEARNING_RATES: Range<f64> = 1e-8..10.0;
@@ -199,7 +197,7 @@ impl Config {
                 return bad(setting, value.to_string(), hint);
             }
         }
-        if self.hidden.len() > MAX_LAYERS {
+        if self.hidden.len() > MAX_HIDDEN_LAYERS {
             let given = counted(self.hidden.len() as u64, "layer");
             return bad("hidden", given, "give at most 16 hidden layers");
         }

@@ -218,10 +218,8 @@ impl Run<'_> {
         };
         let curves = [out.join("loss.csv"), out.join("loss.svg")];
         let datasets = std::slice::from_ref(dataset);
-        let outcome = {
-            let (context, config, anew) = (self.context, &self.config, train::Continues::Anew);
-            train::fit(context, config, datasets, &options, &curves, anew)?
-        };
+        let (context, config, anew) = (self.context, &self.config, train::Continues::Anew);
+        let outcome = train::fit(context, config, datasets, &options, &curves, anew)?;
         let note = train::text(&model, &outcome).replace('\n', "; ");
         self.done("train", note)?;
         let loss = curve_chart(&outcome.history);

@@ -6,7 +6,7 @@ use peelnet_core::{
     statistics::{DEPTH_CODES, ExtremeCode, FARTHEST_CODE},
 };
 use peelnet_model::inputs::{FIVE, Feature, NINE, SlabInputs};
-use peelnet_model::{Budget, Declaration, Network, PixelLoss, Recipe};
+use peelnet_model::{Budget, Declaration, MAX_HIDDEN_LAYERS, Network, PixelLoss, Recipe};
 use serde::Deserialize;
 use std::path::Path;
 
@@ -14,8 +14,6 @@ const MAX_BYTES: u64 = 1 << 20;
 
 /// Hidden units of one layer, at most.
 const MAX_WIDTH: usize = 4096;
-
-const MAX_LAYERS: usize = 16;
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -118,9 +116,9 @@ impl RawDesign {
         };
         let inputs = self.inputs()?;
         let hidden = self.hidden.unwrap_or_else(|| vec![12]);
-        if hidden.len() > MAX_LAYERS {
+        if hidden.len() > MAX_HIDDEN_LAYERS {
             return Err(format!(
-                "hidden holds {} layers; give at most {MAX_LAYERS}",
+                "hidden holds {} layers; give at most {MAX_HIDDEN_LAYERS}",
                 hidden.len()
             ));
         }

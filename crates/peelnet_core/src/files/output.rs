@@ -268,7 +268,7 @@ pub fn remove_replaced(path: &Path) -> io::Result<()> {
     let now = Output::look(path)?;
     match (&now.existing, now.allowed()) {
         (None, _) => Ok(()),
-        (Some(_), Some(allowed)) if allowed.existing == now.existing => fs::remove_file(path),
+        (Some(_), Some(allowed)) => Found(allowed).remove(),
         _ => Err(changed()),
     }
 }
@@ -372,7 +372,7 @@ pub fn folder_of(path: &Path) -> &Path {
 
 /// Whether files can be created in a folder, or in the nearest of those above it that exists: creates one and removes it.
 fn check_folder(folder: &Path) -> io::Result<()> {
-    let folder = absolute(local(folder)?)?;
+    let folder = resolve_folder(&absolute(local(folder)?)?)?;
     let nearest = folder.ancestors().find(|folder| folder.exists());
     let created = tempfile::tempfile_in(nearest.unwrap_or(&folder));
     created.map(drop).map_err(plain)
@@ -631,12 +631,7 @@ pub fn check_is_folder(setting: &str, folder: &Path) -> Result<(), Refused> {
     } else if folder.exists() && !folder.is_dir() {
         Err(Refused::new(false, "is a file; name a folder"))
     } else {
-        let leads = local(folder)
-            .and_then(absolute)
-            .and_then(|path| resolve_folder(&path));
-        leads
-            .and_then(|_| check_folder(folder))
-            .map_err(Refused::from)
+        check_folder(folder).map_err(Refused::from)
     };
     refused.map_err(|refused| refused.about(setting, folder))
 }
