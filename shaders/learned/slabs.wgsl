@@ -38,64 +38,9 @@ struct PeelnetBetween {
     nearest: f32,
 }
 
-// What is known of a pixel's depths, in 8 bits.
-struct PeelnetBins {
-    // Absorbances of eight bins of the frame's depth, nearest first.
-    front: vec4f,
-    back: vec4f,
-    // The level of the nearest depth, counted from the far end, and of the farthest.
-    range: vec2f,
-}
-
-// The two ends of a pixel that a depth alone would have: its level counted from the far end, rounded down from the near one, and its level,
-// rounded up. Of each the most is kept.
-fn peelnet_range_of(zeta: f32) -> vec2f {
-    let level = 127.5 * (zeta + 1.0);
-    return vec2f(255.0 - floor(level), ceil(level)) / 255.0;
-}
-
-// The levels, 0 .. 255, of the nearest and of the farthest depth of a pixel, at least one apart.
-fn peelnet_ends_of(range: vec2f) -> vec2f {
-    let levels = floor(range * 255.0 + 0.5);
-    let nearest = 255.0 - levels.x;
-    return vec2f(nearest, max(levels.y, nearest + 1.0));
-}
-
-// What a fragment writes: what it adds to the bins, and its depth.
-fn peelnet_bins(alpha: f32, zeta: f32) -> PeelnetBins {
-    let place = clamp(zeta * 4.0 + 3.5, 0.0, 7.0);
-    let level = peelnet_level(peelnet_absorbance(alpha));
-    return PeelnetBins(peelnet_in_bins(level, place, 0.0), peelnet_in_bins(level, place, 4.0), peelnet_range_of(zeta));
-}
-
-// How much of eight bins lies before a place among them: twice that, and a number that is the same for all places.
-fn peelnet_up_to(place: f32, front: vec4f, back: vec4f) -> f32 {
-    // A bin's own part is half of 1 + |place - its begin| - |place - its end|.
-    let a = abs(vec4f(place) - vec4f(0.0, 1.0, 2.0, 3.0));
-    let b = abs(vec4f(place) - vec4f(4.0, 5.0, 6.0, 7.0));
-    return dot(front, a - vec4f(a.yzw, b.x)) + dot(back, b - vec4f(b.yzw, abs(place - 8.0)));
-}
-
-// Where a depth lies in its pixel, 0 .. 1, by what is known of the pixel's depths: between its ends each bin takes as much as its length times
-// the root of what is seen of it. Where all bins are empty, it is the root of the frame's depth.
-fn peelnet_in_pixel(zeta: f32, front: vec4f, back: vec4f, range: vec2f) -> f32 {
-    let place = zeta * 4.0 + 4.0;
-    let near = peelnet_seen_behind(0.0, front);
-    let far = peelnet_seen_behind(dot(front, vec4f(1.0)), back);
-    let of_front = sqrt(abs(vec4f(1.0, near.xyz) - near));
-    let of_back = sqrt(abs(vec4f(near.w, far.xyz) - far));
-    // In bins.
-    let ends = peelnet_ends_of(range) * (8.0 / 255.0);
-    let begin = peelnet_up_to(ends.x, of_front, of_back);
-    let end = peelnet_up_to(ends.y, of_front, of_back);
-    let all = end - begin;
-    let passed = (peelnet_up_to(place, of_front, of_back) - begin) / max(all, 1e-6);
-    return select(clamp(passed, 0.0, 1.0), sqrt(place * 0.125), all == 0.0);
-}
-
-// t: where in its pixel the fragment lies, 0 .. 1.
-fn peelnet_place(alpha: f32, t: f32) -> PeelnetPlace {
+fn peelnet_place(alpha: f32, zeta: f32, quantiles: vec4f) -> PeelnetPlace {
     let b = peelnet_absorbance(alpha);
+    let t = peelnet_place_among(0.5 * zeta + 0.5, quantiles);
     let first = select(0.0, 1.0, t >= PEELNET_FIRST_END);
     let passed = first + select(0.0, 1.0, t >= PEELNET_SECOND_END) + select(0.0, 1.0, t >= PEELNET_THIRD_END);
     let slab = min(passed, PEELNET_LAST_SLAB);

@@ -13,9 +13,9 @@ struct PeelnetStatistics {
     firsts: vec2f,
 }
 
-// What a fragment adds to its pixel's statistics. t: where in its pixel it lies, as peelnet_in_pixel has it.
-fn peelnet_statistics(alpha: f32, t: f32) -> PeelnetStatistics {
-    let place = peelnet_place(alpha, t);
+// What a fragment adds to its pixel's statistics.
+fn peelnet_statistics(alpha: f32, zeta: f32, quantiles: vec4f) -> PeelnetStatistics {
+    let place = peelnet_place(alpha, zeta, quantiles);
     let halves = peelnet_records(alpha, place);
     let absorbances = peelnet_in_slab(place.absorbance, place.slab, 0.0);
     let nearest = peelnet_in_slab(halves.x, place.slab, PEELNET_EMPTY);
@@ -25,8 +25,8 @@ fn peelnet_statistics(alpha: f32, t: f32) -> PeelnetStatistics {
 }
 
 // The weight of a fragment, and whether it is known without the network.
-fn peelnet_fragment(alpha: f32, t: f32, absorbances: vec4f, nearest: vec4f, firsts: vec2f) -> vec2f {
-    let place = peelnet_place(alpha, t);
+fn peelnet_fragment(alpha: f32, zeta: f32, quantiles: vec4f, absorbances: vec4f, nearest: vec4f, firsts: vec2f) -> vec2f {
+    let place = peelnet_place(alpha, zeta, quantiles);
     let means = vec4f(absorbances.w, firsts, 0.0);
     let last = vec4f(nearest.w, vec3f(PEELNET_EMPTY));
     return peelnet_weigh(place, alpha >= PEELNET_FAINT, absorbances, means, nearest, last, 1.0);

@@ -235,9 +235,9 @@ fn every_method_has_a_reference() {
         assert!(is_bounded, "{}", method.name);
         // A list has no boxes: `ranges` tests what depends on them.
         let has_boxes = |s: &MethodSpec| s.to_string().contains("range=boxes");
-        // `one` tests what depends on the pixels around.
-        let looks_around =
-            |s: &MethodSpec| s.name().contains("one") && !s.to_string().contains("range=frame");
+        // `tiles` tests what depends on the pixels around.
+        let has_range = || method.parameters.iter().any(|p| p.name == "range");
+        let looks_around = |s: &MethodSpec| has_range() && !s.to_string().contains("range=frame");
         let of_pixels = own().filter(|s| !s.is_scaled() && !has_boxes(s) && !looks_around(s));
         for spec in of_pixels {
             let model = network_of(spec).map(|(_, model)| model);

@@ -12,7 +12,7 @@ mod tests;
 mod views;
 
 pub use file::{parse, read, shipped};
-pub use ranges::{REACH, Source};
+pub use ranges::Source;
 pub use views::{Measured, Stacked, View, peel, score};
 
 use peelnet_core::{
@@ -66,7 +66,7 @@ impl Entry {
             slabs::composite_on(
                 stack.fragments(),
                 [0.0; 3],
-                |depth| stack.zeta(self.source, depth),
+                |depth| stack.zeta(depth),
                 design,
                 SumPrecision::Half,
                 |between| match model {
@@ -93,8 +93,7 @@ impl Row {
             range: entry.source.name().to_owned(),
             apart: design.apart,
             trained_apart: recipe.inputs.known_apart(),
-            // The last frame's range is kept while this frame's is found.
-            bytes: design.bytes() + if entry.source == Source::Last { 2 } else { 0 },
+            bytes: design.bytes() - u32::from(entry.source == Source::Frame),
             inputs: inputs.map(str::to_owned).collect(),
             topology: model.mlp.topology(),
             parameters: model.mlp.parameters() as u64,

@@ -115,7 +115,6 @@ impl Language {
             ValueKind::Number => number,
             ValueKind::Pair => pair,
             ValueKind::Matrix => matrix,
-            ValueKind::Bins => "PeelnetBins",
             ValueKind::Statistics => "PeelnetStatistics",
         };
         format!("{kind} {} = {};", value.name, self.expression(value.call))

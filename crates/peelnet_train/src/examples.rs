@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 use peelnet_core::absorbance::DepthWarp;
 use peelnet_core::files::shown;
 use peelnet_core::methods::known::KnownFragment;
-use peelnet_core::methods::one::{Around, Quantiles, Seen, TILE, Tiles, seen_behind_nearest};
+use peelnet_core::methods::one::Around;
+use peelnet_core::methods::quantiles::{Quantiles, Seen, TILE, Tiles, seen_behind_nearest};
 use peelnet_core::methods::slabs::points;
 use peelnet_core::statistics::SumPrecision;
 use peelnet_dataset::{

@@ -1,7 +1,7 @@
 // One pass: the exported text's sums of each fragment, and the nearest fragment with its colour.
 // Variants: none | wide | frame | wide frame
-@if(!frame) import package::helpers::one::{between, tiles_around};
-import package::helpers::slabs::zeta_of;
+@if(!frame) import package::helpers::quantiles::{between, tiles_around};
+import package::helpers::quantiles::zeta_of;
 @if(frame) import package::learned::weight::peelnet_even;
 import package::learned::weight::{peelnet_noise, peelnet_statistics};
 @if(!frame) import package::scene::camera::camera;

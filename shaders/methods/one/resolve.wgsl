@@ -1,6 +1,6 @@
 // One pass: the exported text's resolve; its colour over black alone where light takes a colour.
 // Variants: none | wide | frame | wide frame | tinted | wide tinted | frame tinted | wide frame tinted
-@if(!frame) import package::helpers::one::{between, tiles_around};
+@if(!frame) import package::helpers::quantiles::{between, tiles_around};
 @if(frame) import package::learned::weight::peelnet_even;
 import package::learned::weight::peelnet_noise;
 @if(tinted) import package::learned::weight::peelnet_pixel;

@@ -1,6 +1,5 @@
-// Slabs, pass 1 over boxes: the range of a pixel from where its ray enters a box to where it leaves it, in 8 bits under MAX blending.
-import package::helpers::slabs::zeta_of;
-import package::learned::weight::peelnet_range_of;
+// Slabs, before them, over boxes: the range of a pixel from where its ray enters a box to where it leaves it, in 8 bits under MAX blending.
+import package::helpers::quantiles::{range_of, zeta_of};
 import package::scene::box_vertex::BoxFace;
 
 @fragment
@@ -10,7 +9,7 @@ fn fragment_main(face: BoxFace) -> @location(0) vec2f {
     let along = select(ray, vec3f(1e-20), abs(ray) < vec3f(1e-20));
     let crossed = min(-face.eye / along, (1.0 - face.eye) / along);
     let enters = clamp(max(crossed.x, max(crossed.y, crossed.z)), 0.0, 1.0);
-    let nearest = peelnet_range_of(zeta_of(enters * face.depth_linear));
-    let farthest = peelnet_range_of(zeta_of(face.depth_linear));
+    let nearest = range_of(zeta_of(enters * face.depth_linear));
+    let farthest = range_of(zeta_of(face.depth_linear));
     return vec2f(nearest.x, farthest.y);
 }

@@ -1,10 +1,11 @@
-// Slabs, pass 3: the exported text's weight of each fragment.
+// Slabs, pass 2: the exported text's weight of each fragment.
 // Variants: none | small | medium | tinted | small tinted | medium tinted | frame | small frame | medium frame | tinted frame | small tinted frame | medium tinted frame | boxes | small boxes | medium boxes | tinted boxes | small tinted boxes | medium tinted boxes
-import package::helpers::slabs::zeta_of;
-@if(frame) import package::helpers::slabs::in_frame;
-@if(boxes) import package::helpers::slabs::in_boxes;
+@if(!frame && !boxes) import package::helpers::quantiles::{between, tiles_around};
+@if(boxes) import package::helpers::quantiles::in_range;
+import package::helpers::quantiles::zeta_of;
+@if(frame) import package::learned::weight::peelnet_even;
 import package::learned::weight::peelnet_fragment;
-@if(!frame && !boxes) import package::learned::weight::peelnet_in_pixel;
+@if(!frame && !boxes) import package::scene::camera::camera;
 import package::scene::shade::shade;
 @if(tinted) import package::scene::shade::covering;
 import package::scene::surface::Surface;
@@ -14,9 +15,8 @@ import package::scene::visible::visible;
 @group(1) @binding(1) var nearest: texture_2d<f32>;
 @if(!small) @group(1) @binding(2) var farthest: texture_2d<f32>;
 @if(!medium) @group(1) @binding(3) var firsts: texture_2d<f32>;
-@if(!frame) @group(1) @binding(4) var range: texture_2d<f32>;
-@if(!frame && !boxes) @group(1) @binding(5) var bins_front: texture_2d<f32>;
-@if(!frame && !boxes) @group(1) @binding(6) var bins_back: texture_2d<f32>;
+@if(boxes) @group(1) @binding(4) var range: texture_2d<f32>;
+@if(!frame && !boxes) @group(1) @binding(5) var<storage, read> quantiles: array<u32>;
 
 struct Sums {
     @location(0) sum: vec4f,
@@ -32,20 +32,17 @@ fn fragment_main(surface: Surface) -> Sums {
     let pixel = vec2u(surface.position.xy);
     let color = shade(surface);
     let zeta = zeta_of(surface.depth_linear);
-    @if(frame) let t = in_frame(zeta);
-    @elif(boxes) let t = in_boxes(zeta, textureLoad(range, pixel, 0).xy);
-    @else let t = peelnet_in_pixel(
-        zeta,
-        textureLoad(bins_front, pixel, 0),
-        textureLoad(bins_back, pixel, 0),
-        textureLoad(range, pixel, 0).xy,
-    );
+    @if(!frame && !boxes) let tiles = tiles_around(pixel, camera.frame_size);
+    @if(!frame && !boxes) let at = tiles.numbers;
+    @if(frame) let around = peelnet_even();
+    @elif(boxes) let around = in_range(textureLoad(range, pixel, 0).xy);
+    @else let around = between(vec4u(quantiles[at.x], quantiles[at.y], quantiles[at.z], quantiles[at.w]), tiles.part);
     let a = textureLoad(absorbances, pixel, 0);
     let n = textureLoad(nearest, pixel, 0);
     @if(!small) let f = textureLoad(farthest, pixel, 0);
-    @if(small) let w = peelnet_fragment(color.a, t, a, n, textureLoad(firsts, pixel, 0).xy).x;
-    @elif(medium) let w = peelnet_fragment(color.a, t, a, n, f).x;
-    @else let w = peelnet_fragment(color.a, t, a, n, f, textureLoad(firsts, pixel, 0)).x;
+    @if(small) let w = peelnet_fragment(color.a, zeta, around, a, n, textureLoad(firsts, pixel, 0).xy).x;
+    @elif(medium) let w = peelnet_fragment(color.a, zeta, around, a, n, f).x;
+    @else let w = peelnet_fragment(color.a, zeta, around, a, n, f, textureLoad(firsts, pixel, 0)).x;
     @if(tinted) return Sums(color * w, vec4f(covering(surface), 0.0));
     @else return Sums(color * w);
 }

@@ -26,31 +26,14 @@ fn whole(@builtin(vertex_index) vertex: u32) -> @builtin(position) vec4f {
     return vec4f(vec2f(f32(vertex & 1u), f32(vertex >> 1u)) * 2.0 - 1.0, 0.5, 1.0);
 }
 
-@group(0) @binding(0) var bins_front: texture_2d<f32>;
-@group(0) @binding(1) var bins_back: texture_2d<f32>;
-@group(0) @binding(2) var range: texture_2d<f32>;
-@group(0) @binding(3) var absorbances: texture_2d<f32>;
-@group(0) @binding(4) var nearest: texture_2d<f32>;
-@group(0) @binding(5) var farthest: texture_2d<f32>;
-@group(0) @binding(6) var sums: texture_2d<f32>;
+@group(0) @binding(0) var absorbances: texture_2d<f32>;
+@group(0) @binding(1) var nearest: texture_2d<f32>;
+@group(0) @binding(2) var farthest: texture_2d<f32>;
+@group(0) @binding(3) var sums: texture_2d<f32>;
 
 // In the range of depth that the layers span.
 fn zeta(depth: f32) -> f32 {
     return peelnet_zeta(depth, 1.0, 8.0);
-}
-
-// Where in its pixel a layer lies.
-fn place(in: Varyings) -> f32 {
-    let at = vec2u(in.position.xy);
-    let front = textureLoad(bins_front, at, 0);
-    let back = textureLoad(bins_back, at, 0);
-    return peelnet_in_pixel(zeta(in.depth), front, back, textureLoad(range, at, 0).xy);
-}
-
-struct Bins {
-    @location(0) front: vec4f,
-    @location(1) back: vec4f,
-    @location(2) range: vec2f,
 }
 
 struct Statistics {
@@ -60,14 +43,8 @@ struct Statistics {
 }
 
 @fragment
-fn bins_of_pixel(in: Varyings) -> Bins {
-    let bins = peelnet_bins(in.color.a, zeta(in.depth));
-    return Bins(bins.front, bins.back, bins.range);
-}
-
-@fragment
 fn statistics(in: Varyings) -> Statistics {
-    let s = peelnet_statistics(in.color.a, place(in));
+    let s = peelnet_statistics(in.color.a, zeta(in.depth), peelnet_even());
     return Statistics(s.absorbances, s.nearest, s.farthest);
 }
 
@@ -76,7 +53,8 @@ fn weighted(in: Varyings) -> @location(0) vec4f {
     let at = vec2u(in.position.xy);
     let w = peelnet_fragment(
         in.color.a,
-        place(in),
+        zeta(in.depth),
+        peelnet_even(),
         textureLoad(absorbances, at, 0),
         textureLoad(nearest, at, 0),
         textureLoad(farthest, at, 0),

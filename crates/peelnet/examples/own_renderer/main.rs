@@ -1,5 +1,6 @@
 //! An exported network in a wgpu program of its own: four layers of glass, drawn in the wrong order and composited right.
-//! peelnet contributes nothing but the text of `models/medium/model.wgsl`; the passes are those that the text describes.
+//! peelnet contributes nothing but the text of `models/medium/model.wgsl`; the passes are those that the text describes, but for the small
+//! texture: of a scene whose layers span its range of depth evenly, `peelnet_even()` says as much.
 //!
 //! `cargo run --example own_renderer -- IMAGE.png`
 
@@ -9,7 +10,7 @@ use plain_wgpu::{Program, SIZE, Target};
 use std::error::Error;
 use wgpu::BlendOperation::{Add, Max};
 use wgpu::Color;
-use wgpu::TextureFormat::{Rg8Unorm, Rgba8Unorm, Rgba16Float};
+use wgpu::TextureFormat::{Rgba8Unorm, Rgba16Float};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let network = peelnet::shipped_networks::find("medium").ok_or("no such network")?;
@@ -17,8 +18,6 @@ fn main() -> Result<(), Box<dyn Error>> {
 
     let black = Color::TRANSPARENT;
     let target = |format, clear, blend| Target::new(&program.device, format, clear, blend);
-    let range = target(Rg8Unorm, black, Some((Max, Max)));
-    let [bins_front, bins_back] = [(); 2].map(|()| target(Rgba8Unorm, black, Some((Add, Add))));
     let absorbances = target(Rgba16Float, black, Some((Add, Add)));
     // What maxima of levels start from: the lowest half float.
     let [r, g, b] = [-65504.0; 3];
@@ -29,18 +28,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let picture = target(Rgba8Unorm, black, None);
 
     let statistics = [&absorbances, &nearest, &farthest];
-    let known = [
-        (0, &bins_front),
-        (1, &bins_back),
-        (2, &range),
-        (3, &absorbances),
-        (4, &nearest),
-        (5, &farthest),
-    ];
-    let resolved = [(3, &absorbances), (6, &sums)];
-    let bins = [&bins_front, &bins_back, &range];
-    program.draw(["layer", "bins_of_pixel"], 4, &[], &bins);
-    program.draw(["layer", "statistics"], 4, &known[..3], &statistics);
+    let known = [(0, &absorbances), (1, &nearest), (2, &farthest)];
+    let resolved = [(0, &absorbances), (3, &sums)];
+    program.draw(["layer", "statistics"], 4, &[], &statistics);
     program.draw(["layer", "weighted"], 4, &known, &[&sums]);
     program.draw(["whole", "resolve"], 1, &resolved, &[&picture]);
     let pixels = program.finish(&picture)?;

@@ -2,7 +2,10 @@ use super::{DESIGNS, Entry, Source};
 use crate::EvalError;
 use peelnet_core::{
     files::{check_name, printable},
-    methods::slabs::{Design, Extent, Interior, Kept, MAX_BINS, MAX_SLABS},
+    methods::{
+        quantiles::Quantiles,
+        slabs::{Design, Extent, Interior, Kept, MAX_BINS, MAX_SLABS},
+    },
     statistics::{DEPTH_CODES, ExtremeCode, FARTHEST_CODE},
 };
 use peelnet_model::inputs::{FIVE, Feature, NINE, SlabInputs};
@@ -108,8 +111,8 @@ impl RawDesign {
             slabs: self.slabs()?,
             records: self.records()?,
             extent: match self.range {
-                Source::Frame | Source::Quantiles => Extent::Frame,
-                Source::Ends | Source::Boxes | Source::Last => Extent::Ends,
+                Source::Tiles | Source::Frame => Extent::Among(Quantiles::EVEN),
+                Source::Ends | Source::Boxes => Extent::Ends,
                 Source::Pixel => Extent::Bins(self.bins()?),
             },
             apart: self.apart,
@@ -307,7 +310,10 @@ seed = 7
         assert_eq!(plain.recipe.loss, Some(PixelLoss::Image));
         assert_eq!(kept(full.design.slabs), [(1.0, false, false, true)]);
         let ExtremeCode { bins, alphas } = full.design.records;
-        assert_eq!((bins, alphas, full.design.extent), (960, 64, Extent::Frame));
+        assert_eq!(
+            (bins, alphas, full.design.extent),
+            (960, 64, Extent::Among(Quantiles::EVEN))
+        );
         let trained = full.recipe.inputs.downcast::<SlabInputs>().unwrap();
         assert!(full.design.apart && !trained.design.apart);
         assert_eq!((trained.features.len(), full.seed), (6, 7));

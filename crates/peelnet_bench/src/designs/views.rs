@@ -2,7 +2,7 @@
 
 use super::{
     MOTIONS, Score,
-    ranges::{Quantiles, Source, moved, of_boxes, of_last},
+    ranges::{Source, moved, of_boxes, of_tiles},
 };
 use crate::{
     EvalError,
@@ -49,10 +49,9 @@ pub struct View {
     pub(super) stacks: Vec<Stack>,
     /// None where the surfaces need more memory than there is.
     shown: Option<Shown>,
-    /// Of each pixel with fragments, the extents of depth that boxes and the last frame give it. Empty of a view of lists.
+    /// Of each pixel with fragments, the scales of depth that boxes and what is seen around it give it. Empty of a view of lists.
     boxes: Vec<Extent>,
-    last: Vec<Extent>,
-    quantiles: Option<Quantiles>,
+    tiles: Vec<Extent>,
     /// The same view after each of [`MOTIONS`]; empty of a view of lists.
     after: Vec<View>,
 }
@@ -70,21 +69,17 @@ impl Stacked<'_> {
 
     /// What a design's slabs are cut by here.
     pub(super) fn extent(&self, source: Source, of_design: Extent) -> Extent {
-        let given = |found: &[Extent]| found.get(self.number).copied().unwrap_or(Extent::Frame);
-        match source {
-            Source::Pixel | Source::Ends | Source::Frame | Source::Quantiles => of_design,
-            Source::Boxes => given(&self.view.boxes),
-            Source::Last => given(&self.view.last),
-        }
+        let found = match source {
+            Source::Tiles => &self.view.tiles,
+            Source::Boxes => &self.view.boxes,
+            Source::Pixel | Source::Ends | Source::Frame => &Vec::new(),
+        };
+        found.get(self.number).copied().unwrap_or(of_design)
     }
 
     /// A depth on the scale that is cut.
-    pub(super) fn zeta(&self, source: Source, depth: f32) -> f64 {
-        let zeta = self.view.warp.cut(depth.into());
-        match &self.view.quantiles {
-            Some(quantiles) if source == Source::Quantiles => quantiles.apply(zeta),
-            _ => zeta,
-        }
+    pub(super) fn zeta(&self, depth: f32) -> f64 {
+        self.view.warp.cut(depth.into())
     }
 }
 
@@ -113,8 +108,7 @@ impl View {
             stacks: Vec::new(),
             shown: None,
             boxes: Vec::new(),
-            last: Vec::new(),
-            quantiles: None,
+            tiles: Vec::new(),
             after: Vec::new(),
         };
         for (place, list) in lists {
@@ -221,7 +215,6 @@ pub fn peel(
     stop: &AtomicBool,
 ) -> Result<Vec<View>, EvalError> {
     check_names(scenes)?;
-    let [width, height] = size.map(|s| s as usize);
     let mut views = Vec::new();
     for scene in scenes {
         let mut peeled = Peeled::new(gpu, scene, size, false)?;
@@ -230,19 +223,13 @@ pub fn peel(
             check_stop(stop)?;
             let mut view = peel_one(&mut peeled, &stage, size, camera)?;
             view.boxes = of_boxes(&view, scene, camera, size);
-            view.quantiles = Some(Quantiles::from_view(&view));
+            view.tiles = of_tiles(&view, size);
             Ok(view)
         };
         for camera in scene.views.iter().take(most.unwrap_or(usize::MAX)) {
             let mut view = of_camera(camera)?;
             for pixels in MOTIONS {
-                let mut after = of_camera(&moved(camera, size, pixels))?;
-                after.last = of_last(&after, &view, width, height);
-                view.after.push(after);
-            }
-            // Frames follow one another both ways: it comes after the one that moved most.
-            if let Some(before) = view.after.last() {
-                view.last = of_last(&view, before, width, height);
+                view.after.push(of_camera(&moved(camera, size, pixels))?);
             }
             views.push(view);
         }

@@ -11,6 +11,7 @@ pub mod moments;
 pub mod nmt;
 pub mod one;
 pub mod over;
+pub mod quantiles;
 pub mod slabs;
 pub mod wboit;
 

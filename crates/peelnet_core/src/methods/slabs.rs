@@ -5,13 +5,18 @@
 //! own slab the nearest and the farthest layer are known, and up to eight layers of a pixel are. What lies between them is
 //! bounded by its mean depth (Markov's inequality), and only where between the bounds the truth lies is guessed: see [`Interior`].
 //!
-//! Slabs are cut where the layers are ([`Scale`]): a first pass sums the absorbance of eight bins of the frame's depth, and finds the pixel's
-//! nearest and farthest depth.
+//! Slabs are cut where the layers are: among the [`Quantiles`] of what is seen around the pixel. Other scales serve comparison ([`Extent`]).
 //!
-//! Three geometry passes: the bins, the sums and records, the colours. Records are levels of depth and opacity under MAX blending
+//! Two geometry passes: the sums and records, the colours. Records are levels of depth and opacity under MAX blending
 //! ([`ExtremeCode`]). The shader is `learned/slabs.wgsl`, with the file of a [`Layout`], such as `slabs_small.wgsl`.
 
-use super::{Point, anchored::composite_weighted, known::KnownFragment, point};
+use super::{
+    Point,
+    anchored::composite_weighted,
+    known::KnownFragment,
+    point,
+    quantiles::{BIN_LEVELS, Quantiles, TOP, bins_of, depth_of, ends_of},
+};
 use crate::{
     absorbance::DepthWarp,
     fragment::Fragment,
@@ -22,9 +27,6 @@ use serde::{Deserialize, Serialize};
 
 /// Slabs of a pixel, at most.
 pub const MAX_SLABS: usize = 8;
-
-/// Levels of 8 bits, less one.
-const TOP: f64 = 255.0;
 
 /// Bins of the frame's depth, at most.
 pub const MAX_BINS: usize = 16;
@@ -43,14 +45,12 @@ pub struct Kept {
 /// The scale of depth that is cut into slabs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Extent {
-    /// The absorbances of so many bins of the frame's depth and the pixel's two ends, in 8 bits each ([`Scale::from_bins`]): a geometry pass more.
-    Bins(usize),
+    /// A depth's place among quantiles, which are known without looking at the pixel.
+    Among(Quantiles),
     /// From the pixel's nearest fragment to its farthest, in 8 bits for either end: a geometry pass more.
     Ends,
-    /// That of the frame's transparent objects.
-    Frame,
-    /// The two ends that something else found for the pixel, in levels as of [`ends_of`].
-    Given([f64; 2]),
+    /// The absorbances of so many bins of the frame's depth and the pixel's two ends, in 8 bits each ([`Scale::from_bins`]): a geometry pass more.
+    Bins(usize),
 }
 
 /// What is kept of a pixel.
@@ -98,24 +98,24 @@ impl Layout {
 }
 
 impl Design {
-    /// 38 bytes a pixel, colours included: three targets beside the bins.
+    /// 28 bytes a pixel, colours included: three targets.
     pub const SMALL: Self = Self {
         slabs: &[until(0.49, true), until(0.77, false), until(1.0, false)],
         records: FARTHEST_CODE,
-        extent: Extent::Bins(8),
+        extent: Extent::Among(Quantiles::EVEN),
         apart: false,
     };
-    /// 42 bytes a pixel, three targets beside the bins.
+    /// 32 bytes a pixel, three targets.
     pub const MEDIUM: Self = Self {
-        slabs: &[until(0.475, true), until(0.81, true), until(1.0, true)],
+        slabs: &[until(0.4, true), until(0.75, true), until(1.0, true)],
         ..Self::SMALL
     };
-    /// 50 bytes a pixel, four targets beside the bins: as much as one pass of plain WebGPU writes.
+    /// 40 bytes a pixel, four targets: as much as one pass of plain WebGPU writes.
     pub const LARGE: Self = Self {
         slabs: &[
-            until(0.34, true),
-            until(0.68, true),
-            until(0.87, true),
+            until(0.3, true),
+            until(0.6, true),
+            until(0.82, true),
             until(1.0, true),
         ],
         ..Self::SMALL
@@ -134,8 +134,9 @@ impl Design {
         let kept = |k: &Kept| [true, k.mean, k.nearest, k.farthest];
         let channels: u32 = self.slabs.iter().flat_map(kept).map(u32::from).sum();
         let scale = match self.extent {
-            Extent::Frame => 0,
-            Extent::Ends | Extent::Given(_) => 2,
+            // Its share of the tiles' bytes.
+            Extent::Among(_) => 1,
+            Extent::Ends => 2,
             Extent::Bins(bins) => bins as u32 + 2,
         };
         scale + 2 * channels + 8 * (1 + u32::from(self.apart))
@@ -158,48 +159,25 @@ struct Place {
     bin: u32,
 }
 
-/// A pixel's own scale of depth, 0 … 1, that is cut into slabs: linear from each knot to the next.
+/// A pixel's scale of depth, 0 … 1, that is cut into slabs.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Scale {
-    /// Warped depths, rising, and where on the scale they lie.
-    knots: [[f64; 2]; MAX_BINS + 1],
-    last: usize,
-    /// Where nothing is known of opacities, the root of it is the scale: what is in front is seen most.
-    root: bool,
+pub enum Scale {
+    Among(Quantiles),
+    /// Linear from each of so many knots to the next: depths, 0 … 1 of the frame's, and where on the scale they lie.
+    Knots([[f64; 2]; MAX_BINS + 1], usize),
 }
 
 impl Scale {
-    pub const WHOLE: Self = Self::linear(-1.0, 1.0);
-
-    const fn linear(from: f64, to: f64) -> Self {
-        let mut knots = [[0.0; 2]; MAX_BINS + 1];
-        (knots[0], knots[1]) = ([from, 0.0], [to, 1.0]);
-        Self {
-            knots,
-            last: 1,
-            root: true,
-        }
-    }
-
-    /// Between two ends, in levels as of [`ends_of`].
-    pub fn from_ends([low, high]: [f64; 2]) -> Self {
-        Self::linear(zeta_of(low), zeta_of(high.max(low + 1.0)))
-    }
-
     /// Of the absorbances of bins of the frame's depth, nearest first, and the levels of the pixel's two ends. Between them each bin takes as much
     /// of the scale as its length times the root of what is seen of it; an empty one takes nothing. Where all are empty, the scale is the frame's.
     pub fn from_bins(absorbances: &[f64], [low, high]: [f64; 2]) -> Self {
         let bins = absorbances.len().min(MAX_BINS);
-        let [from, to] = [low, high.max(low + 1.0)].map(zeta_of);
+        let [from, to] = [low, high.max(low + 1.0)].map(|level| level / TOP);
         let (mut front, mut passed) = (0.0f64, 0.0);
-        let mut scale = Self {
-            last: bins,
-            root: false,
-            ..Self::WHOLE
-        };
-        let edge = |k: usize| (2.0 * k as f64 / bins as f64 - 1.0).clamp(from, to);
+        let mut knots = [[0.0; 2]; MAX_BINS + 1];
+        let edge = |k: usize| (k as f64 / bins as f64).clamp(from, to);
         for (k, &b) in absorbances.iter().take(bins).enumerate() {
-            scale.knots[k] = [edge(k), passed];
+            knots[k] = [edge(k), passed];
             if b > 0.0 {
                 let seen = (-front).exp() - (-front - b).exp();
                 passed += seen.sqrt() * (edge(k + 1) - edge(k));
@@ -207,57 +185,28 @@ impl Scale {
             front += b;
         }
         if passed <= 0.0 {
-            return Self::WHOLE;
+            return Self::Among(Quantiles::EVEN);
         }
-        scale.knots[bins] = [to, passed];
-        scale.knots.iter_mut().for_each(|knot| knot[1] /= passed);
-        scale
+        knots[bins] = [to, passed];
+        knots.iter_mut().for_each(|knot| knot[1] /= passed);
+        Self::Knots(knots, bins)
     }
 
     /// Where on the scale a warped depth lies.
     pub fn place(&self, zeta: f64) -> f64 {
-        let knots = &self.knots[..=self.last];
-        let above = knots.iter().position(|knot| knot[0] >= zeta);
-        let k = above.unwrap_or(self.last).max(1);
-        let ([z0, s0], [z1, s1]) = (knots[k - 1], knots[k]);
-        // The pixel's ends may leave bins no length.
-        let length = (z1 - z0).max(f64::MIN_POSITIVE);
-        let place = s0 + (s1 - s0) * ((zeta - z0) / length).clamp(0.0, 1.0);
-        if self.root { place.sqrt() } else { place }
-    }
-}
-
-/// The levels of the nearest and the farthest of a pixel's depths, rounded away from each other, of 0 … 255.
-pub fn ends_of(zetas: impl IntoIterator<Item = f64>) -> [f64; 2] {
-    let none = [TOP, 0.0f64];
-    zetas.into_iter().fold(none, |[low, high], zeta| {
-        let level = TOP * (zeta * 0.5 + 0.5);
-        [low.min(level.floor()), high.max(level.ceil())]
-    })
-}
-
-fn zeta_of(level: f64) -> f64 {
-    2.0 * level / TOP - 1.0
-}
-
-/// Levels of 8 bits that an absorbance of 1 is.
-pub const BIN_LEVELS: f64 = 64.0;
-
-/// What 8-bit targets hold of so many bins of a pixel's depth, 0 … 255. A fragment is shared between the two bins whose middles it lies
-/// between, so that little changes as it moves from one to the other, and in whole levels, so that no order of adding changes a sum.
-pub fn bins_of(fragments: &[Point], bins: usize) -> Vec<f64> {
-    let mut all = vec![0.0; bins];
-    for &(b, zeta, _) in fragments {
-        let place = (0.5 + 0.5 * zeta) * bins as f64 - 0.5;
-        let place = place.clamp(0.0, bins as f64 - 1.0);
-        // At least one: a bin with any fragment is not empty.
-        let level = (BIN_LEVELS * b + 0.5).floor().max(1.0);
-        for (sum, k) in all.iter_mut().zip(0u8..) {
-            let share = (1.0 - (place - f64::from(k)).abs()).max(0.0);
-            *sum = (*sum + (level * share + 0.5).floor()).min(TOP);
+        let depth = depth_of(zeta);
+        match self {
+            Self::Among(quantiles) => quantiles.place(depth),
+            Self::Knots(knots, last) => {
+                let above = knots[..=*last].iter().position(|knot| knot[0] >= depth);
+                let k = above.unwrap_or(*last).max(1);
+                let ([z0, s0], [z1, s1]) = (knots[k - 1], knots[k]);
+                // The pixel's ends may leave bins no length.
+                let length = (z1 - z0).max(f64::MIN_POSITIVE);
+                s0 + (s1 - s0) * ((depth - z0) / length).clamp(0.0, 1.0)
+            }
         }
     }
-    all
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -305,9 +254,10 @@ impl Slabs {
                     let absorbances: Vec<f64> = levels.map(|l| l / BIN_LEVELS).collect();
                     Scale::from_bins(&absorbances, ends_of(fragments.iter().map(|f| f.1)))
                 }
-                Extent::Ends => Scale::from_ends(ends_of(fragments.iter().map(|f| f.1))),
-                Extent::Frame => Scale::WHOLE,
-                Extent::Given(ends) => Scale::from_ends(ends),
+                Extent::Ends => {
+                    Scale::Among(Quantiles::between(ends_of(fragments.iter().map(|f| f.1))))
+                }
+                Extent::Among(quantiles) => Scale::Among(quantiles),
             },
             slabs: Default::default(),
         };

@@ -5,7 +5,8 @@ use peelnet_core::{
     absorbance::DepthWarp,
     fragment::Fragment,
     methods::{
-        one::{self, Ahead, Around, Design, Kept, Rest, TILE, depth_of, formula},
+        one::{self, Ahead, Around, Design, Kept, Rest, formula},
+        quantiles::depth_of,
         slabs::points,
     },
 };
@@ -150,50 +151,19 @@ pub fn one_surroundings(design: Design) -> &'static Surroundings {
 }
 
 const BEFORE: &str = concat!(
-    zeta!(),
-    " Where boxes show that nothing lies between two depths, use peelnet_cut(zeta, gaps) for zeta: it leaves up to two such gaps out. \
-    quantiles says where among the depths around the pixel most is seen: peelnet_even() where nothing is known but near and far, with several \
-    times the error. noise is any number in 0 .. 1 that is the same for all of a pixel, such as peelnet_noise(pixel): it hides the steps of what is kept \
+    zeta_among_quantiles!(),
+    " noise is any number in 0 .. 1 that is the same for all of a pixel, such as peelnet_noise(pixel): it hides the steps of what is kept \
     of the nearest fragment; 0.5 where that does not matter."
 );
 
-const AROUND: SmallTexture = SmallTexture {
-    name: "quantiles",
-    format: "rgba8unorm",
-    every: TILE,
-    pass: pass(
-        "around",
-        &[],
-        value("bins", ValueKind::Matrix, "peelnet_tile_bins(alpha, zeta)"),
-        &[
-            sum("bins_a", "rgba8unorm", "bins[0]"),
-            sum("bins_b", "rgba8unorm", "bins[1]"),
-            sum("bins_c", "rgba8unorm", "bins[2]"),
-            // In two: four channels of 8 bits count as eight bytes of the 32 that a pass may write, two as two.
-            sum("bins_d", "rg8unorm", "bins[3].xy"),
-            sum("bins_e", "rg8unorm", "bins[3].zw"),
-            most(
-                "tile_nearest",
-                "r16float",
-                LEAST,
-                "peelnet_tile_nearest(alpha, zeta)",
-            ),
-        ],
-    ),
-    sum: "peelnet_tile_seen(mat4x4f(bins_a, bins_b, bins_c, vec4f(bins_d, bins_e)), tile_nearest)",
-    last: "",
-    write: "peelnet_quantiles(sum)",
-    otherwise: "peelnet_even()",
-};
-
 static AROUND_ONE: SmallTexture = SmallTexture {
     last: "peelnet_last_seen(sum_a, sum_b, sum_c, absorbances, quantiles, noise)",
-    ..AROUND
+    ..QUANTILES
 };
 
 static AROUND_WIDE: SmallTexture = SmallTexture {
     last: "peelnet_last_seen(sum_a, sum_b, sum_c, sum_d, sum_e, sum_f, absorbances, absorbances_back, quantiles, noise)",
-    ..AROUND
+    ..QUANTILES
 };
 
 const fn surroundings(
@@ -223,6 +193,7 @@ static ONE: Surroundings = surroundings(
         "learned::absorbance",
         "learned::levels",
         "learned::bins",
+        "learned::quantiles",
         "learned::one",
         "learned::one_narrow",
     ],
@@ -247,6 +218,7 @@ static WIDE: Surroundings = surroundings(
         "learned::absorbance",
         "learned::levels",
         "learned::bins",
+        "learned::quantiles",
         "learned::one",
         "learned::one_wide",
     ],

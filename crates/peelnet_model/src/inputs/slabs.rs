@@ -6,7 +6,7 @@ use peelnet_core::{
     fragment::Fragment,
     methods::{
         known::KnownFragment,
-        slabs::{self, Design, Extent, Interior, Layout, Slabs, bins_of, ends_of, points},
+        slabs::{self, Design, Extent, Interior, Layout, Slabs, points},
     },
 };
 
@@ -70,6 +70,17 @@ impl SlabInputs {
         let layout = self.design.layout();
         layout.expect("recipes that are exported keep what a layout holds")
     }
+
+    /// The design, among the quantiles around a pixel.
+    fn around(&self, pixel: &Observed<'_>) -> Design {
+        match self.design.extent {
+            Extent::Among(_) => Design {
+                extent: Extent::Among(pixel.around.quantiles),
+                ..self.design
+            },
+            _ => self.design,
+        }
+    }
 }
 
 impl NetworkInputs for SlabInputs {
@@ -82,10 +93,14 @@ impl NetworkInputs for SlabInputs {
     }
 
     fn known(&self, pixel: &Observed<'_>) -> Vec<KnownFragment<Vec<f64>>> {
-        let (warp, design) = (&pixel.warp, self.design);
+        let (warp, design) = (&pixel.warp, self.around(pixel));
         let known = slabs::known_fragments(pixel.fragments, warp, design, pixel.precision);
         let read = |f: KnownFragment<_>| f.map(|interior| values(self.features, interior));
         known.into_iter().map(read).collect()
+    }
+
+    fn reads_around(&self) -> bool {
+        matches!(self.design.extent, Extent::Among(_))
     }
 
     fn known_apart(&self) -> bool {
@@ -94,7 +109,8 @@ impl NetworkInputs for SlabInputs {
 
     /// The same slabs with the middle of the bounds.
     fn baseline(&self, pixel: &PeeledPixel<'_>) -> [f64; 3] {
-        let (observed, design) = (&pixel.observed, self.design);
+        let observed = &pixel.observed;
+        let design = self.around(observed);
         let fragments = observed.fragments.iter().zip(pixel.colors);
         let fragments: Vec<_> = fragments
             .map(|(&(depth, alpha), &color)| Fragment::new(depth, alpha, color))
@@ -104,25 +120,13 @@ impl NetworkInputs for SlabInputs {
 
     fn target_values(&self, pixel: &Observed<'_>) -> Vec<(&'static str, Vec<f32>)> {
         let points = points(pixel.fragments, &pixel.warp);
-        let slabs = Slabs::gather(&points, self.design, pixel.precision);
+        let slabs = Slabs::gather(&points, self.around(pixel), pixel.precision);
         let [mut a, mut firsts, mut near, mut far] = [const { Vec::new() }; 4];
         for slab in slabs.stored() {
             let all = [&mut a, &mut firsts, &mut near, &mut far].into_iter();
             all.zip(slab).for_each(|(all, x)| all.push(x as f32));
         }
         let mut targets = Vec::new();
-        if let Extent::Bins(bins) = self.design.extent {
-            let bins = bins_of(&points, bins);
-            let bins: Vec<f32> = bins.into_iter().map(|x| x as f32 / 255.0).collect();
-            let (front, back) = bins.split_at(4);
-            let [low, high] = ends_of(points.iter().map(|f| f.1)).map(|level| level as f32);
-            let ends = vec![(255.0 - low) / 255.0, high / 255.0];
-            targets.extend([
-                ("bins_front", front.to_vec()),
-                ("bins_back", back.to_vec()),
-                ("range", ends),
-            ]);
-        }
         match self.layout() {
             Layout::Small => {
                 a.push(firsts.remove(0));
@@ -150,12 +154,15 @@ pub const fn slab_surroundings(layout: Layout) -> &'static Surroundings {
     [&SMALL, &MEDIUM, &LARGE][layout as usize]
 }
 
-const fn modules(statistics: &'static str) -> [&'static str; 8] {
+static QUANTILES_OF_SLABS: SmallTexture = QUANTILES;
+
+const fn modules(statistics: &'static str) -> [&'static str; 9] {
     [
         "learned::zeta",
         "learned::absorbance",
         "learned::levels",
         "learned::bins",
+        "learned::quantiles",
         "learned::slabs",
         statistics,
         "learned::resolve",
@@ -166,19 +173,12 @@ const fn modules(statistics: &'static str) -> [&'static str; 8] {
 static SMALL: Surroundings = Surroundings {
     parameters: "between: PeelnetBetween",
     modules: &modules("learned::slabs_small"),
-    before: ZETA_WITHOUT_GAPS,
-    around: None,
+    before: ZETA_AMONG_QUANTILES,
+    around: Some(&QUANTILES_OF_SLABS),
     passes: &passes(
         &[ABSORBANCES, NEAREST, sum("firsts", "rg16float", "s.firsts")],
-        &[
-            "bins_front",
-            "bins_back",
-            "range",
-            "absorbances",
-            "nearest",
-            "firsts",
-        ],
-        "peelnet_fragment(alpha, peelnet_in_pixel(zeta, bins_front, bins_back, range), absorbances, nearest, firsts).x",
+        &["quantiles", "absorbances", "nearest", "firsts"],
+        "peelnet_fragment(alpha, zeta, quantiles, absorbances, nearest, firsts).x",
     ),
     resolve: "peelnet_resolve(sums, absorbances.x + absorbances.y + absorbances.z, background)",
 };
@@ -191,15 +191,8 @@ static MEDIUM: Surroundings = Surroundings {
             most_and_sum("nearest", "s.nearest"),
             most_and_sum("farthest", "s.farthest"),
         ],
-        &[
-            "bins_front",
-            "bins_back",
-            "range",
-            "absorbances",
-            "nearest",
-            "farthest",
-        ],
-        "peelnet_fragment(alpha, peelnet_in_pixel(zeta, bins_front, bins_back, range), absorbances, nearest, farthest).x",
+        &["quantiles", "absorbances", "nearest", "farthest"],
+        "peelnet_fragment(alpha, zeta, quantiles, absorbances, nearest, farthest).x",
     ),
     ..SMALL
 };
@@ -213,16 +206,8 @@ static LARGE: Surroundings = Surroundings {
             most("farthest", HALF, LEAST, "s.farthest"),
             sum("firsts", HALF, "s.firsts"),
         ],
-        &[
-            "bins_front",
-            "bins_back",
-            "range",
-            "absorbances",
-            "nearest",
-            "farthest",
-            "firsts",
-        ],
-        "peelnet_fragment(alpha, peelnet_in_pixel(zeta, bins_front, bins_back, range), absorbances, nearest, farthest, firsts).x",
+        &["quantiles", "absorbances", "nearest", "farthest", "firsts"],
+        "peelnet_fragment(alpha, zeta, quantiles, absorbances, nearest, farthest, firsts).x",
     ),
     resolve: "peelnet_resolve(sums, absorbances.x + absorbances.y + absorbances.z + absorbances.w, background)",
     ..SMALL
@@ -232,24 +217,10 @@ const fn passes(
     targets: &'static [Target],
     reads: &'static [&'static str],
     call: &'static str,
-) -> [Pass; 3] {
-    const BINS: &[Target] = &[
-        sum("bins_front", "rgba8unorm", "bins.front"),
-        sum("bins_back", "rgba8unorm", "bins.back"),
-        most("range", "rg8unorm", 0.0, "bins.range"),
-    ];
-    let bins = value("bins", ValueKind::Bins, "peelnet_bins(alpha, zeta)");
-    let in_pixel = statistics(
-        "peelnet_statistics(alpha, peelnet_in_pixel(zeta, bins_front, bins_back, range))",
-    );
+) -> [Pass; 2] {
+    let kept = statistics("peelnet_statistics(alpha, zeta, quantiles)");
     [
-        pass("range", &[], bins, BINS),
-        pass(
-            "statistics",
-            &["bins_front", "bins_back", "range"],
-            in_pixel,
-            targets,
-        ),
+        pass("statistics", &["quantiles"], kept, targets),
         pass("weights", reads, weight(call), SUMS),
     ]
 }

@@ -1,5 +1,6 @@
 //! What surrounds a network: the shader modules of its text, and what a renderer does around that text.
 
+use peelnet_core::methods::quantiles::TILE;
 use serde::{Serialize, Serializer};
 use std::fmt;
 
@@ -59,8 +60,6 @@ pub enum ValueKind {
     Pair,
     /// Four columns of four numbers.
     Matrix,
-    /// The text's `PeelnetBins`.
-    Bins,
     /// The text's `PeelnetStatistics`.
     Statistics,
 }
@@ -145,10 +144,20 @@ pub(super) use zeta;
 
 pub(super) const ZETA: &str = zeta!();
 
-pub(super) const ZETA_WITHOUT_GAPS: &str = concat!(
-    zeta!(),
-    " Where boxes show that nothing lies between two depths, use peelnet_cut(zeta, gaps) for zeta in all passes: it leaves up to two such gaps out."
-);
+macro_rules! zeta_among_quantiles {
+    () => {
+        concat!(
+            zeta!(),
+            " Where boxes show that nothing lies between two depths, use peelnet_cut(zeta, gaps) for zeta in all passes: it leaves up to two such \
+    gaps out. quantiles says where among the depths around the pixel most is seen: peelnet_even() where nothing is known but near and far, with \
+    several times the error."
+        )
+    };
+}
+
+pub(super) use zeta_among_quantiles;
+
+pub(super) const ZETA_AMONG_QUANTILES: &str = zeta_among_quantiles!();
 
 pub(super) const fn target(
     name: &'static str,
@@ -213,3 +222,33 @@ pub(super) const fn statistics(call: &'static str) -> Option<Value> {
 pub(super) const fn weight(call: &'static str) -> Option<Value> {
     value("w", ValueKind::Number, call)
 }
+
+/// Quantiles of what is seen around a pixel.
+pub(super) const QUANTILES: SmallTexture = SmallTexture {
+    name: "quantiles",
+    format: "rgba8unorm",
+    every: TILE,
+    pass: pass(
+        "around",
+        &[],
+        value("bins", ValueKind::Matrix, "peelnet_tile_bins(alpha, zeta)"),
+        &[
+            sum("bins_a", "rgba8unorm", "bins[0]"),
+            sum("bins_b", "rgba8unorm", "bins[1]"),
+            sum("bins_c", "rgba8unorm", "bins[2]"),
+            // In two: four channels of 8 bits count as eight bytes of the 32 that a pass may write, two as two.
+            sum("bins_d", "rg8unorm", "bins[3].xy"),
+            sum("bins_e", "rg8unorm", "bins[3].zw"),
+            most(
+                "tile_nearest",
+                "r16float",
+                LEAST,
+                "peelnet_tile_nearest(alpha, zeta)",
+            ),
+        ],
+    ),
+    sum: "peelnet_tile_seen(mat4x4f(bins_a, bins_b, bins_c, vec4f(bins_d, bins_e)), tile_nearest)",
+    last: "",
+    write: "peelnet_quantiles(sum)",
+    otherwise: "peelnet_even()",
+};

@@ -29,6 +29,7 @@ pub mod slabs;
 pub(crate) mod spec;
 pub mod stochastic;
 pub mod stored_colors;
+mod tiles;
 pub mod wavelet;
 mod wboit;
 pub mod weighted_average;

@@ -4,7 +4,7 @@
 mod expectations;
 pub mod reference;
 
-use crate::methods::prelude::*;
+use crate::methods::{prelude::*, tiles};
 use peelnet_core::methods::one::Design;
 use peelnet_model::inputs::one_surroundings;
 
@@ -88,36 +88,18 @@ fn passes(p: &mut Passes<'_>) {
     let kept = p.described(surroundings.passes[0].targets);
     let around = surroundings.around.filter(|_| !is_framed);
     let from_last = from_last(p.on.spec);
-    let quantiles = around.map(|around| {
-        let small = around.pass.targets.iter();
-        let small = small.map(|target| Target::described(target).every(around.every));
-        let small = p.targets(small);
-        let [columns, rows] = p.on.size.map(|n| u64::from(n.div_ceil(around.every)));
-        let tiles = columns * rows;
-        let seen = p.uncleared("seen", 64 * tiles);
-        let found = p.uncleared(around.name, 4 * tiles);
-        let geometry = p.geometry("methods::one::tiles", Needs::OPACITY);
-        geometry.features(["tiles"]).writes(small.iter().copied());
-        geometry.after_cuts |= from_last;
-        let bins = p.compute("methods::one::seen", tiles);
-        bins.features(["tiles"]).reads(small).writes([seen]);
-        bins.after_cuts |= from_last;
-        p.compute("methods::one::quantiles", tiles)
-            .reads([seen])
-            .writes([found]);
-        (found, seen, tiles)
-    });
-    let found = quantiles.map(|(found, ..)| found);
+    let tiles = around.map(|around| tiles::draw(p, around, from_last));
+    let found = tiles.as_ref().map(|tiles| tiles.quantiles);
     p.geometry("methods::one::gather", Needs::COLOR)
         .features(features())
         .reads(found)
         .writes(kept.iter().copied());
-    if let Some((found, seen, tiles)) = quantiles.filter(|_| from_last) {
-        p.compute("methods::one::seen", tiles)
+    if let Some(tiles) = tiles.filter(|_| from_last) {
+        p.compute("methods::one::last", tiles.count)
             .features(is_wide.then_some("wide"))
             .reads(kept.iter().copied())
-            .reads([found])
-            .writes([seen]);
+            .reads([tiles.quantiles])
+            .writes([tiles.seen]);
     }
     let tint = p.on.tinted.then(|| p.target(crate::passes::TINTED));
     if let Some(tint) = tint {

@@ -4,7 +4,10 @@ use super::{design, is_framed};
 use crate::methods::{MethodSpec, Pixel};
 use peelnet_core::{
     absorbance::DepthWarp,
-    methods::one::{self, Ahead, Around, Quantiles, formula},
+    methods::{
+        one::{self, Ahead, Around, formula},
+        quantiles::Quantiles,
+    },
     statistics::SumPrecision,
 };
 use peelnet_model::{Model, inputs::NINE_OF_SUMS};

@@ -4,21 +4,24 @@
 mod expectations;
 pub mod reference;
 
-use crate::methods::prelude::*;
+use crate::methods::{prelude::*, tiles};
 use peelnet_core::methods::slabs::Layout;
 use peelnet_model::inputs::{SlabInputs, slab_surroundings};
 
 const KEEP: Parameter = Parameter::words(
     "keep",
-    "large (default, 50 bytes a pixel): four slabs; medium (42 bytes): three; small (38 bytes): three, and the farthest fragment of the nearest alone",
+    "large (default, 41 bytes a pixel): four slabs; medium (33 bytes): three; small (29 bytes): three, and the farthest fragment of the nearest alone",
     &["large", "medium", "small"],
 );
 
 const RANGE: Parameter = Parameter::words(
     "range",
-    "what slabs are cut by: the absorbances of eight bins of depth between the pixel's ends (pixel, by default), found by a geometry pass of its own; depth from where the pixel's ray enters the first box around a transparent part to where it leaves the last (boxes), found by a pass over boxes; or depth in the frame (frame), with a pass less and several times the error",
-    &["pixel", "boxes", "frame"],
+    "where the depths come from that slabs are cut at: one pixel in 64, drawn first without shading (tiles, by default); from where the pixel's ray enters the first box around a transparent part to where it leaves the last (boxes), found by a pass over boxes; or the frame's nearest and farthest depth (frame). Without tiles errors are several times as large",
+    &["tiles", "boxes", "frame"],
 );
+
+/// A pixel's ends, as boxes say.
+const BOXES: Target = Target::half("range", 2, Blend::MaxBytes);
 
 /// What a method without a network keeps.
 fn plain_layout(spec: &MethodSpec) -> Layout {
@@ -51,7 +54,7 @@ pub(super) const SMALL: Method = Method {
     expectations: expectations::SMALL,
     ..slabs(
         "deep-small",
-        "known layers of three slabs and a learned guess between them, 38 bytes a pixel",
+        "known layers of three slabs and a learned guess between them, 29 bytes a pixel",
     )
 };
 
@@ -60,7 +63,7 @@ pub(super) const MEDIUM: Method = Method {
     expectations: expectations::MEDIUM,
     ..slabs(
         "deep-medium",
-        "the same in 42 bytes a pixel: the one to ship",
+        "the same in 33 bytes a pixel: the one to ship",
     )
 };
 
@@ -69,7 +72,7 @@ pub(super) const LARGE: Method = Method {
     expectations: expectations::LARGE,
     ..slabs(
         "deep-large",
-        "the same of four slabs, 50 bytes a pixel: the most accurate",
+        "the same of four slabs, 41 bytes a pixel: the most accurate",
     )
 };
 
@@ -83,39 +86,32 @@ fn passes(p: &mut Passes<'_>) {
         p.without_network(slab_surroundings(layout));
         layout
     };
-    let [framed, boxes] = ["frame", "boxes"].map(|word| RANGE.word(p.on.spec) == word);
-    // The shaders' own case is the largest, over a range of its own.
+    let surroundings = slab_surroundings(layout);
+    let [of_slabs, _] = surroundings.passes else {
+        unreachable!("a pass of the statistics and one of the weights")
+    };
+    // The shaders' own case is the largest.
     let is_large = layout == Layout::Large;
     let own_layout = (!is_large).then_some(layout.name());
-    let source = match (framed, boxes) {
-        (true, _) => Some("frame"),
-        (_, true) => Some("boxes"),
-        _ => None,
-    };
+    let range = RANGE.word(p.on.spec);
+    let source = ["frame", "boxes"].into_iter().find(|word| *word == range);
     let features = || own_layout.into_iter().chain(source);
     let sums = p.target(SUMS);
-    let [of_range, of_slabs, _] = slab_surroundings(layout).passes else {
-        unreachable!("a pass of the range, one of the statistics and one of the weights")
-    };
     let kept = p.described(of_slabs.targets);
-    // Over boxes the range alone, which is the last; over the frame nothing.
-    let skipped = match source {
-        None => 0,
-        Some("boxes") => of_range.targets.len() - 1,
-        Some(_) => of_range.targets.len(),
+    let found = match (source, surroundings.around) {
+        (Some("boxes"), _) => {
+            let range = p.target(BOXES);
+            let pass = p.geometry("methods::slabs::boxes", Needs::DEPTH).boxes();
+            pass.label("range").writes([range]);
+            Some(range)
+        }
+        (None, Some(around)) => Some(tiles::draw(p, around, false).quantiles),
+        _ => None,
     };
-    let found = p.described(&of_range.targets[skipped..]);
-    if boxes {
-        let pass = p.geometry("methods::slabs::boxes", Needs::DEPTH).boxes();
-        pass.label("range").writes(found.iter().copied());
-    } else if !framed {
-        p.geometry("methods::slabs::range", Needs::OPACITY)
-            .writes(found.iter().copied());
-    }
     let first = kept[0];
     p.geometry("methods::slabs::statistics", Needs::OPACITY)
         .features(features())
-        .reads(found.iter().copied())
+        .reads(found)
         .writes(kept.iter().copied());
     p.geometry("methods::slabs::gather", Needs::COLOR)
         .features(features())

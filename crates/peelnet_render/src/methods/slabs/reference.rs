@@ -4,7 +4,10 @@ use super::{RANGE, plain_layout};
 use crate::methods::{MethodSpec, Pixel};
 use peelnet_core::{
     absorbance::DepthWarp,
-    methods::slabs::{self, Design, Extent, Interior},
+    methods::{
+        quantiles::Quantiles,
+        slabs::{self, Design, Extent, Interior},
+    },
     statistics::SumPrecision,
 };
 use peelnet_model::{Model, inputs::SlabInputs};
@@ -12,7 +15,7 @@ use peelnet_model::{Model, inputs::SlabInputs};
 /// A guess of where between its bounds the share lies that is in front of a fragment.
 type Guess<'m> = Box<dyn Fn(&Interior) -> f64 + 'm>;
 
-/// What the CPU reference keeps and guesses. Lists of fragments have no boxes: what is drawn with them has no reference.
+/// What the CPU reference keeps and guesses, of what is drawn without looking at other pixels or boxes.
 fn design_and_guess<'m>(
     spec: &MethodSpec,
     model: Option<&'m Model>,
@@ -25,15 +28,11 @@ fn design_and_guess<'m>(
     } else {
         (plain_layout(spec).design(), Box::new(slabs::middle))
     };
-    let extent = match RANGE.word(spec) {
-        "boxes" => return None,
-        "frame" => Extent::Frame,
-        _ => design.extent,
-    };
-    Some((Design { extent, ..design }, guess))
+    let extent = Extent::Among(Quantiles::EVEN);
+    (RANGE.word(spec) == "frame").then_some((Design { extent, ..design }, guess))
 }
 
-/// What a pixel's colour is; `None` where a learned method has no model, and with boxes.
+/// What a pixel's colour is; `None` where a learned method has no model, or other pixels or boxes are looked at.
 pub fn composite(spec: &MethodSpec, p: &Pixel<'_>) -> Option<[f32; 3]> {
     let (design, guess) = design_and_guess(spec, p.model)?;
     let (fragments, c0) = (p.fragments, p.background);

@@ -1,11 +1,12 @@
-//! `one` over several tiles of pixels: what its CPU reference, of a pixel alone, does not know.
+//! Methods over several tiles of pixels: what their CPU references, of a pixel alone, do not know.
 
 use peelnet_core::{
     absorbance::DepthWarp,
     fragment::{self, Fragment},
     methods::{
-        one::{self, Around, Design, Kept, Tiles, formula, seen_behind_nearest},
-        slabs,
+        one::{self, Around, Design, Kept, formula},
+        quantiles::{Seen, Tiles, seen_behind_nearest},
+        slabs::{self, Extent, Layout},
     },
     statistics::SumPrecision,
 };
@@ -62,37 +63,56 @@ fn pixels_are_told_what_is_seen_around_them() {
         seen_behind_nearest(&slabs::points(&points, &warp))
     };
     let all_tiles = || [0, 1].into_iter().flat_map(|y| [0, 1, 2].map(|x| [x, y]));
-    let tiles = |seen: &dyn Fn([u32; 2]) -> one::Seen| {
+    let tiles = |seen: &dyn Fn([u32; 2]) -> Seen| {
         Tiles::new(SIZE, &all_tiles().map(|tile| (tile, seen(tile))).collect())
     };
     let small = tiles(&|[x, _]| seen(8 * x + 4));
     assert_ne!(small.at([0, 0]), small.at([23, 0]));
-    for (method, design, frames) in [
-        ("one", Design::ONE, 0),
-        ("one-wide", Design::WIDE, 0),
-        ("one:range=last", Design::ONE, SETTLED),
-        ("one-wide:range=last", Design::WIDE, SETTLED),
-    ] {
-        let mut around = small.clone();
-        for _ in 0..frames {
-            around = tiles(&|tile| {
+    type Color<'a> = &'a dyn Fn(&[Fragment], Around) -> [f32; 3];
+    let of_sums = |design| {
+        move |list: &[Fragment], around| {
+            one::composite(list, BACKGROUND, &warp, design, around, formula)
+        }
+    };
+    let of_slabs = |layout: Layout| {
+        move |list: &[Fragment], around: Around| {
+            let design = slabs::Design {
+                extent: Extent::Among(around.quantiles),
+                ..layout.design()
+            };
+            slabs::composite(list, BACKGROUND, &warp, design, slabs::middle)
+        }
+    };
+    let (one, wide) = (of_sums(Design::ONE), of_sums(Design::WIDE));
+    let [small_slabs, medium, large] = Layout::ALL.map(of_slabs);
+    let methods: [(&str, Color<'_>, Option<Design>); 7] = [
+        ("one", &one, None),
+        ("one-wide", &wide, None),
+        ("one:range=last", &one, Some(Design::ONE)),
+        ("one-wide:range=last", &wide, Some(Design::WIDE)),
+        ("slabs:keep=small", &small_slabs, None),
+        ("slabs:keep=medium", &medium, None),
+        ("slabs", &large, None),
+    ];
+    for (method, color, last) in methods {
+        let mut tiles_of_frame = small.clone();
+        for design in last.iter().cycle().take(SETTLED as usize) {
+            tiles_of_frame = tiles(&|tile| {
                 let pixel = tile.map(|k| 8 * k + 4);
                 let list = fragments(pixel[0]);
                 let points = slabs::points(&fragment::points(&list), &warp);
                 let colors = list.iter().map(|f| f.color);
-                let known = Around::new(around.at(pixel), pixel);
-                Kept::gather(&points, colors, design, known, SumPrecision::Half).last_seen()
+                let known = Around::new(tiles_of_frame.at(pixel), pixel);
+                Kept::gather(&points, colors, *design, known, SumPrecision::Half).last_seen()
             });
         }
-        assert_eq!(around == small, frames == 0);
-        let tiles = around;
+        assert_eq!(tiles_of_frame == small, last.is_none());
         let image = draw(&gpu(), &scene, method, SIZE);
         let mut apart = Vec::new();
         for y in 0..SIZE[1] {
             for x in 0..SIZE[0] {
-                let around = Around::new(tiles.at([x, y]), [x, y]);
-                let want =
-                    one::composite(&fragments(x), BACKGROUND, &warp, design, around, formula);
+                let around = Around::new(tiles_of_frame.at([x, y]), [x, y]);
+                let want = color(&fragments(x), around);
                 let found = image.pixels[(y * SIZE[0] + x) as usize];
                 let errors = found.iter().zip(want).map(|(a, b)| (a - b).abs());
                 let error = errors.fold(0.0, f32::max);

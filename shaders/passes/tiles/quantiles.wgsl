@@ -1,4 +1,4 @@
-// One pass, before it: the quantiles of each tile, of what is seen in the nine around it.
+// Tiles, pass 3: the quantiles of each tile, of what is seen in the nine around it.
 // Loops: 2: three rows, and three columns.
 import package::learned::weight::peelnet_quantiles;
 

@@ -1,0 +1,37 @@
+//! Where in depth the layers around each pixel are, found by a pass over one pixel of 64 without shading.
+
+use super::prelude::*;
+use crate::passes::Handle;
+use peelnet_model::inputs::SmallTexture;
+
+/// Of the tiles of a frame, in rows.
+pub(super) struct Tiles {
+    pub(super) count: u64,
+    /// Quantiles of what is seen in the nine tiles around each, in 8 bits.
+    pub(super) quantiles: Handle,
+    /// What is seen in each, by bins of depth.
+    pub(super) seen: Handle,
+}
+
+/// The passes that find them; `after_cuts` where what is seen is known from the last frame, but for its first and those after jumps.
+pub(super) fn draw(p: &mut Passes<'_>, around: &SmallTexture, after_cuts: bool) -> Tiles {
+    let small = around.pass.targets.iter();
+    let small = small.map(|target| Target::described(target).every(around.every));
+    let small = p.targets(small);
+    let [columns, rows] = p.on.size.map(|n| u64::from(n.div_ceil(around.every)));
+    let count = columns * rows;
+    let seen = p.uncleared("seen", 64 * count);
+    let quantiles = p.uncleared(around.name, 4 * count);
+    let bins = p.geometry("passes::tiles::bins", Needs::OPACITY);
+    bins.writes(small.iter().copied()).after_cuts |= after_cuts;
+    let of_pixels = p.compute("passes::tiles::seen", count);
+    of_pixels.reads(small).writes([seen]).after_cuts |= after_cuts;
+    p.compute("passes::tiles::quantiles", count)
+        .reads([seen])
+        .writes([quantiles]);
+    Tiles {
+        count,
+        quantiles,
+        seen,
+    }
+}
