@@ -3,51 +3,53 @@
 // GLSL ES 3.00, WebGL 2. Paste it below #version 300 es and precision highp float; and precision highp int;.
 // Network: 9-12-1 (Relu hidden, Sigmoid last), 133 parameters, 120 multiply-adds. Recipe large, seed 1, 80 epochs.
 // Answers: transmittance of what lies between a slab's known ends, exp(-absorbance * share) with absorbance = root_absorbance^2 and share in share_low .. share_high.
-// Input 0: root_absorbance (root of the absorbance between the slab's ends), 0.0 .. 21.107838 in training.
+// Input 0: root_absorbance (root of the absorbance between the slab's ends), 0.0 .. 21.30343 in training.
 // Input 1: place_fraction (of the way between the slab's ends), 0.0 .. 1.0 in training.
 // Input 2: mean_fraction (of the way between the slab's ends), 0.0 .. 1.0 in training.
 // Input 3: share_low (of the absorbance between the slab's ends), 0.0 .. 1.0 in training.
 // Input 4: share_high (of the absorbance between the slab's ends), 0.0 .. 1.0 in training.
 // Input 5: root_own (root of the fragment's absorbance), 0.031630483 .. 2.4013393 in training.
 // Input 6: half_extent (half of the way between the slab's ends, in slabs), 0.00052083336 .. 1.0 in training.
-// Input 7: of_own (absorbance between the ends, of that and the fragment's), 0.0 .. 0.9999906 in training.
+// Input 7: of_own (absorbance between the ends, of that and the fragment's), 0.0 .. 0.9999905 in training.
 // Input 8: of_nearest (absorbance between the ends, of that and the nearer end's), 0.0 .. 1.0 in training.
 // Trained on 21565798 rows of boxes, cups, foliage, intersecting, opaque-mix, panes, sixteen-025, sixteen-050, sixteen-075, sixteen-085, sixteen-random-alpha, sixteen-random-color, smoke-100, smoke-30, synthetic (dataset f0e6c4a7cca08d560f99a5be9cbd1514bf8be352632a347602bf08363695fd29+e22e844788a454658277e87e23685b5ffa00e3ad2d48cb833cc53130eaf4d8b7).
-// Loss: training 0.000105, validation 0.000098, test 0.000103.
-// Held-out error, mean |T - T_exact|: boxes-held 0.00160, cups-held 0.00136, foliage-held 0.00038, panes-held 0.00009, sixteen-held 0.00023, smoke-held 0.00333.
+// Loss: training 0.000108, validation 0.000090, test 0.000108.
+// Held-out error, mean |T - T_exact|: boxes-held 0.00185, cups-held 0.00179, foliage-held 0.00090, panes-held 0.00053, sixteen-held 0.00043, smoke-held 0.00252.
 //
 // Self-tests, to some roundings of 32 bits; weights and colours also to those of 16-bit targets.
-// peelnet_weight(0.2954644, 0.13589168, 0.26682287, 0.7078695, 0.5534122, 0.8413221, 0.6951227, 0.3716183, 0.9624051) = 0.945929
-// peelnet_weight(2.6873326, 0.2162394, 0.7240006, 0.37958002, 0.26558614, 1.9607327, 0.5804378, 0.90978944, 0.04841405) = 0.065241195
-// peelnet_weight(1.176659, 0.55773175, 0.41844797, 0.7173642, 0.44993675, 1.6151378, 0.48404527, 0.3332267, 0.6325573) = 0.41662478
+// peelnet_weight(0.484543, 0.67085797, 0.16887921, 0.7373583, 0.19208878, 0.1129206, 0.12900263, 0.43583515, 0.7663156) = 0.88658637
+// peelnet_weight(2.7122345, 0.2162394, 0.7240006, 0.37958002, 0.26558614, 1.9607327, 0.5804378, 0.9097894, 0.04841405) = 0.0690707
+// peelnet_weight(1.1875623, 0.55773175, 0.41844797, 0.7173642, 0.44993675, 1.6151378, 0.48404527, 0.33322668, 0.6325573) = 0.4769692
 // Four fragments of a pixel, near 1.0, far 8.0, background 0.25, 0.5, 0.75:
 //    z 1.0, alpha 0.5, rgb 1.0, 0.0, 0.0: zeta -1.0, weight 1.0
 //    z 2.0, alpha 0.5, rgb 0.0, 1.0, 0.0: zeta -0.33333334, weight 0.5
 //    z 4.0, alpha 0.5, rgb 0.0, 0.0, 1.0: zeta 0.33333334, weight 0.25
 //    z 8.0, alpha 0.9, rgb 1.0, 1.0, 1.0: zeta 1.0, weight 0.125
-//    target bins_front: 0.17254902, 0.0, 0.14509805, 0.02745098
-//    target bins_back: 0.02745098, 0.14509805, 0.0, 0.5764706
-//    target range: 1.0, 1.0
 //    target absorbances: 0.6931472, 0.6931472, 0.6931472, 2.302585
-//    target nearest: 64928.0, 0.0072517395, 0.033599854, -64768.0
-//    target farthest: -65088.0, -0.007270813, -0.03375244, 65248.0
-//    target firsts: -0.6931472, -0.15837766, -0.20979747, 2.302585
+//    target nearest: 64928.0, 678.5, 0.22814941, -64768.0
+//    target farthest: -65088.0, -681.0, -0.22875977, 65248.0
+//    target firsts: -0.6931472, -0.5391145, -0.27305797, 2.302585
 //    colour of the pixel: 0.615625, 0.36875, 0.246875
 //
 // How to draw with it. Targets may have 32 bits a channel wherever 16 are named.
-// 0. zeta = peelnet_zeta(z, near, far): z is the distance along the view axis, near and far the range of z that the bounding boxes of the transparent objects in view span, clipped to the camera's. A tight range matters more than anything else you choose. Compute zeta with this function in all passes. Its range is the same for the whole frame: peelnet_zeta_in(z, peelnet_range(near, far)) is the same value, and the range may be passed in. Where boxes show that nothing lies between two depths, use peelnet_cut(zeta, gaps) for zeta in all passes: it leaves up to two such gaps out.
-// 1. Pass "range": draw all transparent surfaces, in any order. PeelnetBins bins = peelnet_bins(alpha, zeta);
-//    bins_front: rgba8unorm, cleared to 0, blending ADD, from bins.front
-//    bins_back: rgba8unorm, cleared to 0, blending ADD, from bins.back
-//    range: rg8unorm, cleared to 0, blending MAX, from bins.range
-// 2. Pass "statistics": draw all transparent surfaces, in any order. PeelnetStatistics s = peelnet_statistics(alpha, peelnet_in_pixel(zeta, bins_front, bins_back, range));
+// 0. zeta = peelnet_zeta(z, near, far): z is the distance along the view axis, near and far the range of z that the bounding boxes of the transparent objects in view span, clipped to the camera's. The tighter the range, the less errs. Compute zeta with this function in all passes. Its range is the same for the whole frame: peelnet_zeta_in(z, peelnet_range(near, far)) is the same value, and the range may be passed in. Where boxes show that nothing lies between two depths, use peelnet_cut(zeta, gaps) for zeta in all passes: it leaves up to two such gaps out. quantiles says where among the depths around the pixel most is seen: peelnet_even() where nothing is known but near and far, with several times the error.
+//    quantiles: rgba8unorm, a texture of one texel for 8 by 8 pixels, read with linear interpolation; peelnet_even() where it is not drawn.
+//    At its size, draw all transparent surfaces, in any order. mat4 bins = peelnet_tile_bins(alpha, zeta);
+//    bins_a: rgba8unorm, cleared to 0, blending ADD, from bins[0]
+//    bins_b: rgba8unorm, cleared to 0, blending ADD, from bins[1]
+//    bins_c: rgba8unorm, cleared to 0, blending ADD, from bins[2]
+//    bins_d: rg8unorm, cleared to 0, blending ADD, from bins[3].xy
+//    bins_e: rg8unorm, cleared to 0, blending ADD, from bins[3].zw
+//    tile_nearest: r16float, cleared to -65504, blending MAX, from peelnet_tile_nearest(alpha, zeta)
+//    Then each of its texels is peelnet_quantiles(sum): sum adds, over the 3 by 3 texels around it, peelnet_tile_seen(mat4(bins_a, bins_b, bins_c, vec4(bins_d, bins_e)), tile_nearest).
+// 1. Pass "statistics": draw all transparent surfaces, in any order. PeelnetStatistics s = peelnet_statistics(alpha, zeta, quantiles);
 //    absorbances: rgba16float, cleared to 0, blending ADD, from s.absorbances
 //    nearest: rgba16float, cleared to -65504, blending MAX, from s.nearest
 //    farthest: rgba16float, cleared to -65504, blending MAX, from s.farthest
 //    firsts: rgba16float, cleared to 0, blending ADD, from s.firsts
-// 3. Pass "weights": draw all transparent surfaces, in any order. float w = peelnet_fragment(alpha, peelnet_in_pixel(zeta, bins_front, bins_back, range), absorbances, nearest, farthest, firsts).x;
+// 2. Pass "weights": draw all transparent surfaces, in any order. float w = peelnet_fragment(alpha, zeta, quantiles, absorbances, nearest, farthest, firsts).x;
 //    sums: rgba16float, cleared to 0, blending ADD, from vec4(alpha * rgb, alpha) * w
-// 4. Resolve: peelnet_resolve(sums, absorbances.x + absorbances.y + absorbances.z + absorbances.w, background) is the colour of the pixel, and its coverage in alpha.
+// 3. Resolve: peelnet_resolve(sums, absorbances.x + absorbances.y + absorbances.z + absorbances.w, background) is the colour of the pixel, and its coverage in alpha.
 // - alpha is opacity, rgb the linear colour that is not multiplied by it. Resolve before tone mapping and encoding.
 // - Test depth against the opaque surfaces, do not write it: a depth prepass with transparent surfaces in it hides what lies behind.
 // - z grows with distance, also where depth buffers are reversed.
@@ -76,11 +78,6 @@ struct PeelnetBetween {
     float own;
     float nearest;
 };
-struct PeelnetBins {
-    vec4 front;
-    vec4 back;
-    vec2 range;
-};
 struct PeelnetStatistics {
     vec4 absorbances;
     vec4 nearest;
@@ -88,13 +85,15 @@ struct PeelnetStatistics {
     vec4 firsts;
 };
 const float PEELNET_BIN_LEVELS = 64.0;
+const float PEELNET_TILE_DEPTHS = 240.0;
+const float PEELNET_TILE_OPACITIES = 256.0;
 const float PEELNET_FAINT = 0.003921569;
 const float PEELNET_BINS = 1920.0;
 const float PEELNET_OPACITIES = 32.0;
 const float PEELNET_EMPTY = -65504.0;
-const float PEELNET_FIRST_END = 0.34;
-const float PEELNET_SECOND_END = 0.68;
-const float PEELNET_THIRD_END = 0.87;
+const float PEELNET_FIRST_END = 0.3;
+const float PEELNET_SECOND_END = 0.6;
+const float PEELNET_THIRD_END = 0.82;
 const float PEELNET_LAST_SLAB = 3.0;
 
 
@@ -155,76 +154,124 @@ vec4 peelnet_seen_behind(float before, vec4 bins) {
     return exp((levels_3 * -3.984375));
 }
 
-vec2 peelnet_range_of(float zeta_1) {
-    float level_1 = (127.5 * (zeta_1 + 1.0));
-    return (vec2((255.0 - floor(level_1)), ceil(level_1)) / vec2(255.0));
+vec4 peelnet_even() {
+    return vec4(0.06, 0.35, 0.65, 0.94);
 }
 
-vec2 peelnet_ends_of(vec2 range_1) {
-    vec2 levels_4 = floor(((range_1 * 255.0) + vec2(0.5)));
-    float nearest_2 = (255.0 - levels_4.x);
-    return vec2(nearest_2, max(levels_4.y, (nearest_2 + 1.0)));
+float peelnet_place_among(float depth, vec4 quantiles) {
+    vec4 begin_1 = vec4(0.0, quantiles.xyz);
+    vec4 parts = clamp(((vec4(depth) - begin_1) / max((quantiles - begin_1), vec4(0.0001))), vec4(0.0), vec4(1.0));
+    float last = clamp(((depth - quantiles.w) / max((1.0 - quantiles.w), 0.0001)), 0.0, 1.0);
+    return (dot(parts, vec4(0.06, 0.29, 0.3, 0.29)) + (0.06 * last));
 }
 
-PeelnetBins peelnet_bins(float alpha_1, float zeta_2) {
-    float place_5 = clamp(((zeta_2 * 4.0) + 3.5), 0.0, 7.0);
-    float _e9 = peelnet_absorbance(alpha_1);
-    float _e10 = peelnet_level(_e9);
-    vec4 _e12 = peelnet_in_bins(_e10, place_5, 0.0);
-    vec4 _e14 = peelnet_in_bins(_e10, place_5, 4.0);
-    vec2 _e15 = peelnet_range_of(zeta_2);
-    return PeelnetBins(_e12, _e14, _e15);
+mat4x4 peelnet_tile_levels(float level_1, float depth_1) {
+    float place_4 = clamp(((depth_1 * 16.0) - 0.5), 0.0, 15.0);
+    vec4 _e10 = peelnet_in_bins(level_1, place_4, 0.0);
+    vec4 _e12 = peelnet_in_bins(level_1, place_4, 4.0);
+    vec4 _e14 = peelnet_in_bins(level_1, place_4, 8.0);
+    vec4 _e16 = peelnet_in_bins(level_1, place_4, 12.0);
+    return mat4x4(_e10, _e12, _e14, _e16);
 }
 
-float peelnet_up_to(float place_1, vec4 front, vec4 back) {
-    vec4 a = abs((vec4(place_1) - vec4(0.0, 1.0, 2.0, 3.0)));
-    vec4 b = abs((vec4(place_1) - vec4(4.0, 5.0, 6.0, 7.0)));
-    return (dot(front, (a - vec4(a.yzw, b.x))) + dot(back, (b - vec4(b.yzw, abs((place_1 - 8.0))))));
+mat4x4 peelnet_tile_bins(float alpha_1, float zeta_1) {
+    float _e2 = peelnet_absorbance(alpha_1);
+    float _e3 = peelnet_level(_e2);
+    mat4x4 _e8 = peelnet_tile_levels(_e3, ((0.5 * zeta_1) + 0.5));
+    return _e8;
 }
 
-float peelnet_in_pixel(float zeta_3, vec4 front_1, vec4 back_1, vec2 range_2) {
-    float place_6 = ((zeta_3 * 4.0) + 4.0);
-    vec4 _e9 = peelnet_seen_behind(0.0, front_1);
-    vec4 _e13 = peelnet_seen_behind(dot(front_1, vec4(1.0)), back_1);
-    vec4 of_front = sqrt(abs((vec4(1.0, _e9.xyz) - _e9)));
-    vec4 of_back = sqrt(abs((vec4(_e9.w, _e13.xyz) - _e13)));
-    vec2 _e26 = peelnet_ends_of(range_2);
-    vec2 ends_1 = (_e26 * 0.03137255);
-    float _e30 = peelnet_up_to(ends_1.x, of_front, of_back);
-    float _e32 = peelnet_up_to(ends_1.y, of_front, of_back);
-    float all_ = (_e32 - _e30);
-    float _e34 = peelnet_up_to(place_6, of_front, of_back);
-    float passed_1 = ((_e34 - _e30) / max(all_, 1e-6));
-    return ((all_ == 0.0) ? sqrt((place_6 * 0.125)) : clamp(passed_1, 0.0, 1.0));
+float peelnet_tile_nearest(float alpha_2, float zeta_2) {
+    float _e2 = peelnet_absorbance(alpha_2);
+    float bin_1 = min(floor((((0.5 * zeta_2) + 0.5) * PEELNET_TILE_DEPTHS)), 239.0);
+    float opacity = floor((((_e2 / (_e2 + 1.0)) * 270.9375) + 0.5));
+    vec3 _e26 = peelnet_halves(vec3((((239.0 - bin_1) * PEELNET_TILE_OPACITIES) + opacity)));
+    return _e26.x;
+}
+
+vec4 peelnet_before(mat4x4 bins_1) {
+    vec4 all_ = (vec4(1.0) * bins_1);
+    return vec4(0.0, all_.x, (all_.x + all_.y), ((all_.x + all_.y) + all_.z));
+}
+
+vec4 peelnet_seen(vec4 bins_2, vec4 taken, float before_1) {
+    vec4 _e3 = peelnet_seen_behind(before_1, bins_2);
+    vec4 seen_1 = (vec4(exp((before_1 * -3.984375)), _e3.xyz) - _e3);
+    return ((seen_1 * max((bins_2 - taken), vec4(0.0))) / max(bins_2, vec4(0.003921569)));
+}
+
+mat4x4 peelnet_tile_seen(mat4x4 bins_3, float nearest) {
+    vec3 _e3 = peelnet_levels(vec3(nearest));
+    float level_2 = max(_e3.x, 0.0);
+    float back = floor((level_2 * 0.00390625));
+    float opacity_1 = ((level_2 - (back * PEELNET_TILE_OPACITIES)) * 0.003921569);
+    float depth_2 = (((PEELNET_TILE_DEPTHS - back) - 0.5) / PEELNET_TILE_DEPTHS);
+    float _e24 = peelnet_level((opacity_1 / (1.0625 - opacity_1)));
+    mat4x4 _e25 = peelnet_tile_levels(_e24, depth_2);
+    vec4 _e26 = peelnet_before(bins_3);
+    vec4 _e30 = peelnet_seen(bins_3[0], _e25[0], _e26.x);
+    vec4 _e34 = peelnet_seen(bins_3[1], _e25[1], _e26.y);
+    vec4 _e38 = peelnet_seen(bins_3[2], _e25[2], _e26.z);
+    vec4 _e42 = peelnet_seen(bins_3[3], _e25[3], _e26.w);
+    return mat4x4(_e30, _e34, _e38, _e42);
+}
+
+float peelnet_passed(float share, float before_2, vec4 bins_4) {
+    float two_1 = (bins_4.x + bins_4.y);
+    vec4 begin_2 = (vec4(before_2) + vec4(0.0, bins_4.x, two_1, (two_1 + bins_4.z)));
+    return dot(clamp(((vec4(share) - begin_2) / max(bins_4, vec4(1e-9))), vec4(0.0), vec4(1.0)), vec4(1.0));
+}
+
+float peelnet_depth_at(float share_1, mat4x4 bins_5, vec4 before_3) {
+    float _e5 = peelnet_passed(share_1, before_3.x, bins_5[0]);
+    float _e8 = peelnet_passed(share_1, before_3.y, bins_5[1]);
+    float front = (_e5 + _e8);
+    float _e12 = peelnet_passed(share_1, before_3.z, bins_5[2]);
+    float _e16 = peelnet_passed(share_1, before_3.w, bins_5[3]);
+    return (0.0625 * ((front + _e12) + _e16));
+}
+
+vec4 peelnet_quantiles(mat4x4 seen) {
+    vec4 even = vec4(0.00125);
+    mat4x4 bins_6 = (seen + mat4x4(even, even, even, even));
+    vec4 _e5 = peelnet_before(bins_6);
+    vec4 _e6 = peelnet_even();
+    vec4 shares_1 = (_e6 * (_e5.w + dot(bins_6[3], vec4(1.0))));
+    float _e15 = peelnet_depth_at(shares_1.x, bins_6, _e5);
+    float _e17 = peelnet_depth_at(shares_1.y, bins_6, _e5);
+    float _e19 = peelnet_depth_at(shares_1.z, bins_6, _e5);
+    float _e21 = peelnet_depth_at(shares_1.w, bins_6, _e5);
+    return vec4(_e15, _e17, _e19, _e21);
 }
 
 float peelnet_of_slab(vec4 values, float slab) {
     return ((slab >= 2.0) ? ((slab == 3.0) ? values.w : values.z) : ((slab == 1.0) ? values.y : values.x));
 }
 
-PeelnetPlace peelnet_place(float alpha_2, float t) {
-    float _e2 = peelnet_absorbance(alpha_2);
-    float first_2 = ((t >= PEELNET_FIRST_END) ? 1.0 : 0.0);
-    float passed_2 = ((first_2 + ((t >= PEELNET_SECOND_END) ? 1.0 : 0.0)) + ((t >= PEELNET_THIRD_END) ? 1.0 : 0.0));
-    float slab_2 = min(passed_2, PEELNET_LAST_SLAB);
-    float _e27 = peelnet_of_slab(vec4(0.0, 0.34, 0.68, 0.87), slab_2);
-    float _e33 = peelnet_of_slab(vec4(0.34, 0.68, 0.87, 1.0), slab_2);
-    float inside = ((t - _e27) / (_e33 - _e27));
-    float bin_1 = min(floor((inside * PEELNET_BINS)), 1919.0);
-    float opacity = floor((((_e2 / (_e2 + 1.0)) * 32.9375) + 0.5));
-    float near_2 = (((1919.0 - bin_1) * PEELNET_OPACITIES) + opacity);
-    return PeelnetPlace(_e2, slab_2, ((2.0 * inside) - 1.0), bin_1, near_2, ((bin_1 * PEELNET_OPACITIES) + opacity));
+PeelnetPlace peelnet_place(float alpha_3, float zeta_3, vec4 quantiles_1) {
+    float _e3 = peelnet_absorbance(alpha_3);
+    float _e8 = peelnet_place_among(((0.5 * zeta_3) + 0.5), quantiles_1);
+    float first_2 = ((_e8 >= PEELNET_FIRST_END) ? 1.0 : 0.0);
+    float passed_1 = ((first_2 + ((_e8 >= PEELNET_SECOND_END) ? 1.0 : 0.0)) + ((_e8 >= PEELNET_THIRD_END) ? 1.0 : 0.0));
+    float slab_2 = min(passed_1, PEELNET_LAST_SLAB);
+    float _e33 = peelnet_of_slab(vec4(0.0, 0.3, 0.6, 0.82), slab_2);
+    float _e39 = peelnet_of_slab(vec4(0.3, 0.6, 0.82, 1.0), slab_2);
+    float inside = ((_e8 - _e33) / (_e39 - _e33));
+    float bin_2 = min(floor((inside * PEELNET_BINS)), 1919.0);
+    float opacity_2 = floor((((_e3 / (_e3 + 1.0)) * 32.9375) + 0.5));
+    float near_2 = (((1919.0 - bin_2) * PEELNET_OPACITIES) + opacity_2);
+    return PeelnetPlace(_e3, slab_2, ((2.0 * inside) - 1.0), bin_2, near_2, ((bin_2 * PEELNET_OPACITIES) + opacity_2));
 }
 
-vec2 peelnet_records(float alpha_3, PeelnetPlace place_2) {
-    vec3 _e6 = peelnet_halves(vec3(place_2.near, place_2.far, place_2.far));
-    vec2 levels_5 = _e6.xy;
-    return ((alpha_3 < PEELNET_FAINT) ? vec2(-65504.0) : levels_5);
+vec2 peelnet_records(float alpha_4, PeelnetPlace place_1) {
+    vec3 _e6 = peelnet_halves(vec3(place_1.near, place_1.far, place_1.far));
+    vec2 levels_4 = _e6.xy;
+    return ((alpha_4 < PEELNET_FAINT) ? vec2(-65504.0) : levels_4);
 }
 
 vec2 peelnet_absorbances_of(vec2 levels_1) {
-    vec2 share = ((levels_1 - (floor((levels_1 * 0.03125)) * PEELNET_OPACITIES)) * 0.032258064);
-    return (share / (vec2(1.0625) - share));
+    vec2 share_2 = ((levels_1 - (floor((levels_1 * 0.03125)) * PEELNET_OPACITIES)) * 0.032258064);
+    return (share_2 / (vec2(1.0625) - share_2));
 }
 
 float peelnet_middle_of(float bin) {
@@ -235,20 +282,20 @@ vec4 peelnet_in_slab(float value, float slab_1, float elsewhere) {
     return vec4(((slab_1 == 0.0) ? value : elsewhere), ((slab_1 == 1.0) ? value : elsewhere), ((slab_1 == 2.0) ? value : elsewhere), ((slab_1 == 3.0) ? value : elsewhere));
 }
 
-PeelnetBetween peelnet_between(PeelnetPlace place_3, float total, float first_1, vec2 levels_2) {
+PeelnetBetween peelnet_between(PeelnetPlace place_2, float total, float first_1, vec2 levels_2) {
     bool local = false;
     bool local_1 = false;
     float begin = 0.0;
     float end = 0.0;
-    float b_1 = place_3.absorbance;
-    float others = max((total - b_1), 0.0);
+    float b = place_2.absorbance;
+    float others = max((total - b), 0.0);
     float noise = max((total * 0.0009765625), 1e-6);
     float near_back = floor((levels_2.x * 0.03125));
     float near_bin = (1919.0 - near_back);
     float near_level = (levels_2.x + ((near_bin - near_back) * PEELNET_OPACITIES));
     vec2 _e23 = peelnet_absorbances_of(levels_2);
     bool all_1 = (_e23.x > (others - (((0.019354839 * (1.0 + _e23.x)) * (1.0 + _e23.x)) + noise)));
-    float near_3 = ((near_bin > place_3.bin) ? 0.0 : (all_1 ? others : _e23.x));
+    float near_3 = ((near_bin > place_2.bin) ? 0.0 : (all_1 ? others : _e23.x));
     float far_bin = floor((levels_2.y * 0.03125));
     if (!((levels_2.y == near_level))) {
         local = (levels_2.y < 0.0);
@@ -257,7 +304,7 @@ PeelnetBetween peelnet_between(PeelnetPlace place_3, float total, float first_1,
     }
     bool is_one = local;
     if (!(is_one)) {
-        local_1 = (far_bin < place_3.bin);
+        local_1 = (far_bin < place_2.bin);
     } else {
         local_1 = true;
     }
@@ -267,33 +314,33 @@ PeelnetBetween peelnet_between(PeelnetPlace place_3, float total, float first_1,
     begin = _e67;
     float _e69 = peelnet_middle_of(far_bin);
     end = (is_one ? 1.0 : _e69);
-    float rest = (((total - b_1) - near_3) - far_2);
+    float rest = (((total - b) - near_3) - far_2);
     float _e79 = begin;
     float _e82 = end;
-    float moment = (((first_1 - (b_1 * place_3.inside)) - (near_3 * _e79)) - (far_2 * _e82));
+    float moment = (((first_1 - (b * place_2.inside)) - (near_3 * _e79)) - (far_2 * _e82));
     float _e85 = begin;
     float _e86 = begin;
-    begin = ((_e86 > place_3.inside) ? -1.0 : _e85);
+    begin = ((_e86 > place_2.inside) ? -1.0 : _e85);
     float _e91 = end;
     float _e92 = end;
-    end = ((_e92 < place_3.inside) ? 1.0 : _e91);
-    float in_front = ((near_3 * ((near_bin == place_3.bin) ? 0.5 : 1.0)) + (far_2 * ((far_bin == place_3.bin) ? 0.5 : 0.0)));
+    end = ((_e92 < place_2.inside) ? 1.0 : _e91);
+    float in_front = ((near_3 * ((near_bin == place_2.bin) ? 0.5 : 1.0)) + (far_2 * ((far_bin == place_2.bin) ? 0.5 : 0.0)));
     float _e110 = end;
     float _e111 = begin;
     float extent_1 = max((_e110 - _e111), 0.0010416667);
     float per_extent = (1.0 / extent_1);
     float _e118 = begin;
-    float x = clamp(((place_3.inside - _e118) * per_extent), 0.0, 1.0);
+    float x = clamp(((place_2.inside - _e118) * per_extent), 0.0, 1.0);
     float _e126 = begin;
     float _e127 = end;
-    float depth = clamp((moment / max(rest, noise)), _e126, _e127);
+    float depth_3 = clamp((moment / max(rest, noise)), _e126, _e127);
     float _e129 = begin;
-    float mean = clamp(((depth - _e129) * per_extent), 0.0, 1.0);
-    bool before_1 = (x < mean);
-    float bound = ((before_1 ? (1.0 - mean) : (x - mean)) / max((before_1 ? (1.0 - x) : x), 1e-6));
-    float low = (before_1 ? 0.0 : bound);
-    float high = (before_1 ? bound : 1.0);
-    return PeelnetBetween(max(rest, 0.0), x, mean, low, high, (0.5 * extent_1), b_1, in_front);
+    float mean = clamp(((depth_3 - _e129) * per_extent), 0.0, 1.0);
+    bool before_4 = (x < mean);
+    float bound = ((before_4 ? (1.0 - mean) : (x - mean)) / max((before_4 ? (1.0 - x) : x), 1e-6));
+    float low = (before_4 ? 0.0 : bound);
+    float high = (before_4 ? bound : 1.0);
+    return PeelnetBetween(max(rest, 0.0), x, mean, low, high, (0.5 * extent_1), b, in_front);
 }
 
 bool peelnet_is_kept(float own, float kept) {
@@ -312,10 +359,10 @@ float peelnet_share(float root_absorbance, float place_fraction, float mean_frac
     vec4 input_a = vec4(root_absorbance, place_fraction, mean_fraction, share_low);
     vec4 input_b = vec4(share_high, root_own, half_extent, of_own);
     vec4 input_c = vec4(of_nearest, 0.0, 0.0, 0.0);
-    vec4 layer_a_a = max((((vec4(2.5333376, 0.070135444, 6.55761, 9.338499) + (mat4x4(vec4(0.06938627, -0.18546443, -0.16126896, -0.0978224), vec4(-2.8618555, 1.1962174, -2.2454934, -1.967748), vec4(-1.3940566, -3.5056498, -1.1702229, -1.1813458), vec4(-1.0886809, -0.014783437, -3.0635908, -1.4621649)) * input_a)) + (mat4x4(vec4(-0.6980536, 1.7846111, 0.25155202, -0.0022205736), vec4(-0.17082416, -0.13570544, 0.13718012, -0.7164993), vec4(-0.059486482, 1.4970536, -1.5278703, -3.0911248), vec4(-0.45216277, 0.646417, -0.11476041, -1.99819)) * input_b)) + (vec4(-0.2150367, 0.05851872, -1.1947396, -1.0811282) * input_c.x)), vec4(0.0));
-    vec4 layer_a_b = max((((vec4(8.595566, -2.1603658, -4.6171513, 4.446983) + (mat4x4(vec4(0.046490982, -0.021122804, -0.0967739, -0.05729483), vec4(-2.5474672, 1.0714152, -1.9551623, 2.394742), vec4(-5.0801864, 3.263625, -0.07937207, -2.860324), vec4(-4.577743, 1.0223571, 6.441565, 4.304795)) * input_a)) + (mat4x4(vec4(-2.6261086, 1.7954695, 1.8110046, 0.93702084), vec4(0.53599936, 0.5783657, 0.38734752, -1.5262477), vec4(-1.0452762, -3.8572392, 2.4509215, -1.5024484), vec4(-0.32625282, 0.08800727, 4.724238, -0.42166162)) * input_b)) + (vec4(0.3956092, -0.30297762, -2.0267947, -1.7356248) * input_c.x)), vec4(0.0));
-    vec4 layer_a_c = max((((vec4(4.4543576, -2.973365, -7.652848, 0.42543393) + (mat4x4(vec4(0.029131893, 0.18631081, 0.13666841, 0.16539651), vec4(-0.26469445, 1.1132456, 0.82761866, -1.2643151), vec4(-0.783623, -0.6680362, -1.178817, 0.2704268), vec4(-1.805566, 0.664728, -5.7957106, -4.446497)) * input_a)) + (mat4x4(vec4(-2.092326, 5.091627, 1.0575033, -2.1673481), vec4(0.5481401, -0.061678205, 1.246126, -0.46817154), vec4(1.2582825, 0.33472043, 0.6918554, 1.199201), vec4(-3.7064905, -4.3939705, 3.915088, -4.182435)) * input_b)) + (vec4(-1.6668515, -0.2672489, 2.1147249, 4.4725013) * input_c.x)), vec4(0.0));
-    float layer_b_a = (1.0 / (1.0 + exp(min(-((((-0.5501553 + dot(vec4(-1.4394537, 0.49696675, -0.45589456, -0.36356), layer_a_a)) + dot(vec4(0.51607615, 0.32655874, -0.5143021, 0.58047265), layer_a_b)) + dot(vec4(-0.9152549, 1.665513, -0.56657845, -0.7014192), layer_a_c))), 80.0))));
+    vec4 layer_a_a = max((((vec4(0.7082578, -3.5820465, -3.005874, 5.875387) + (mat4x4(vec4(-0.005105822, -0.3286876, 0.048821513, -0.13456222), vec4(-3.3188956, -0.026648695, -0.3899754, -1.9027017), vec4(-0.82351637, 0.005685166, 2.5049596, -2.831827), vec4(-0.43040735, 1.5429169, -7.2741995, -1.2681906)) * input_a)) + (mat4x4(vec4(-0.75191647, 1.8230765, 0.58691657, 0.34909603), vec4(-0.064772345, 0.51947457, -0.3702163, 0.8569079), vec4(0.16480353, 0.8260518, 1.0607253, 1.4038762), vec4(-0.5772384, 0.55815375, -1.9842545, -2.9378307)) * input_b)) + (vec4(1.0990607, 2.9000716, 3.3847952, -0.44497156) * input_c.x)), vec4(0.0));
+    vec4 layer_a_b = max((((vec4(6.5070996, -1.3105907, -4.6976385, 2.869873) + (mat4x4(vec4(-0.13199525, 0.20203054, 0.15890752, -0.09989472), vec4(-1.9383106, 1.0660152, -1.9112885, 2.7403), vec4(-4.990838, -0.44386223, -0.20353511, -0.6259148), vec4(-4.5988, 3.1177535, -0.48814595, -3.1149778)) * input_a)) + (mat4x4(vec4(-0.37457332, 4.319807, 0.36671373, -1.1487457), vec4(0.3489128, -0.3690539, -1.9590429, -1.5051035), vec4(-0.20200513, -0.2560703, 2.5463088, 1.6114689), vec4(-2.1301358, -4.8727465, -1.4359399, 1.4264619)) * input_b)) + (vec4(1.1803893, -0.22580642, 5.219606, -3.1420977) * input_c.x)), vec4(0.0));
+    vec4 layer_a_c = max((((vec4(6.3488297, -2.1874573, -1.51283, -4.5364575) + (mat4x4(vec4(0.034802686, -0.009735772, 0.21353258, -0.0063673602), vec4(-0.8877908, -1.6347204, -0.1412491, 0.73567724), vec4(0.2703797, -0.7277027, -3.5090938, 1.1734997), vec4(-3.6329007, 4.6404023, -6.4219174, -5.6560946)) * input_a)) + (mat4x4(vec4(-3.6939406, -1.9516546, 0.14241646, -1.354015), vec4(0.11682509, 0.79115266, 0.5775363, -1.0267948), vec4(0.33704478, 3.323818, -0.079797864, 1.3801761), vec4(-4.082955, -0.94698524, -0.4084194, 5.40172)) * input_b)) + (vec4(-0.51515675, 2.002943, 3.1268444, 0.9330572) * input_c.x)), vec4(0.0));
+    float layer_b_a = (1.0 / (1.0 + exp(min(-((((-0.93166846 + dot(vec4(-3.6211195, 0.5825937, -0.32378608, -0.3979195), layer_a_a)) + dot(vec4(0.36350596, 1.2450213, 0.7082416, 0.38062564), layer_a_b)) + dot(vec4(-0.60285634, 0.50670636, -0.5195065, -0.36412972), layer_a_c))), 80.0))));
     return layer_b_a;
 }
 
@@ -324,38 +371,38 @@ float peelnet_network(PeelnetBetween between) {
     return _e24;
 }
 
-vec2 peelnet_weigh(PeelnetPlace place_4, bool counts, vec4 absorbances, vec4 firsts, vec4 nearest, vec4 farthest, float ends) {
+vec2 peelnet_weigh(PeelnetPlace place_3, bool counts, vec4 absorbances, vec4 firsts, vec4 nearest_1, vec4 farthest, float ends) {
     bool local_3 = false;
     bool local_4 = false;
     bool local_5 = false;
     bool local_6 = false;
     bool local_7 = false;
     vec4 sums_2 = min(absorbances, vec4(65504.0));
-    float _e11 = peelnet_of_slab(sums_2, place_4.slab);
-    float _e13 = peelnet_of_slab(firsts, place_4.slab);
+    float _e11 = peelnet_of_slab(sums_2, place_3.slab);
+    float _e13 = peelnet_of_slab(firsts, place_3.slab);
     float first_3 = clamp(_e13, -65504.0, 65504.0);
-    float _e18 = peelnet_of_slab(nearest, place_4.slab);
-    float _e20 = peelnet_of_slab(farthest, place_4.slab);
+    float _e18 = peelnet_of_slab(nearest_1, place_3.slab);
+    float _e20 = peelnet_of_slab(farthest, place_3.slab);
     vec2 halves_1 = vec2(_e18, _e20);
     vec3 _e24 = peelnet_levels(vec3(halves_1, halves_1.y));
     vec2 decoded = _e24.xy;
-    vec2 levels_6 = ((place_4.slab < ends) ? decoded : vec2(decoded.x, -1.0));
-    float before_2 = ((((place_4.slab > 0.0) ? sums_2.x : 0.0) + ((place_4.slab > 1.0) ? sums_2.y : 0.0)) + ((place_4.slab > 2.0) ? sums_2.z : 0.0));
+    vec2 levels_5 = ((place_3.slab < ends) ? decoded : vec2(decoded.x, -1.0));
+    float before_5 = ((((place_3.slab > 0.0) ? sums_2.x : 0.0) + ((place_3.slab > 1.0) ? sums_2.y : 0.0)) + ((place_3.slab > 2.0) ? sums_2.z : 0.0));
     if (counts) {
-        bool _e56 = peelnet_is_kept(place_4.near, levels_6.x);
+        bool _e56 = peelnet_is_kept(place_3.near, levels_5.x);
         local_3 = _e56;
     } else {
         local_3 = false;
     }
     bool is_near = local_3;
     if (counts) {
-        local_4 = (levels_6.y >= 0.0);
+        local_4 = (levels_5.y >= 0.0);
     } else {
         local_4 = false;
     }
     bool _e65 = local_4;
     if (_e65) {
-        bool _e70 = peelnet_is_kept(place_4.far, levels_6.y);
+        bool _e70 = peelnet_is_kept(place_3.far, levels_5.y);
         local_5 = _e70;
     } else {
         local_5 = false;
@@ -373,28 +420,28 @@ vec2 peelnet_weigh(PeelnetPlace place_4, bool counts, vec4 absorbances, vec4 fir
         local_7 = true;
     }
     bool known = local_7;
-    PeelnetBetween _e83 = peelnet_between(place_4, _e11, first_3, levels_6);
+    PeelnetBetween _e83 = peelnet_between(place_3, _e11, first_3, levels_5);
     float _e88 = peelnet_network(_e83);
-    float share_1 = (_e83.low + ((_e83.high - _e83.low) * _e88));
-    float at_end = (is_far ? max((_e11 - place_4.absorbance), 0.0) : 0.0);
-    float inside_1 = (known ? at_end : (_e83.nearest + (_e83.absorbance * share_1)));
-    return vec2(exp(-((before_2 + inside_1))), (known ? 1.0 : 0.0));
+    float share_3 = (_e83.low + ((_e83.high - _e83.low) * _e88));
+    float at_end = (is_far ? max((_e11 - place_3.absorbance), 0.0) : 0.0);
+    float inside_1 = (known ? at_end : (_e83.nearest + (_e83.absorbance * share_3)));
+    return vec2(exp(-((before_5 + inside_1))), (known ? 1.0 : 0.0));
 }
 
-PeelnetStatistics peelnet_statistics(float alpha_4, float t_1) {
-    PeelnetPlace _e2 = peelnet_place(alpha_4, t_1);
-    vec2 _e3 = peelnet_records(alpha_4, _e2);
-    vec4 _e7 = peelnet_in_slab(_e2.absorbance, _e2.slab, 0.0);
-    vec4 _e11 = peelnet_in_slab(_e3.x, _e2.slab, PEELNET_EMPTY);
-    vec4 _e17 = peelnet_in_slab((_e2.absorbance * _e2.inside), _e2.slab, 0.0);
-    vec4 _e21 = peelnet_in_slab(_e3.y, _e2.slab, PEELNET_EMPTY);
-    return PeelnetStatistics(_e7, _e11, _e21, _e17);
+PeelnetStatistics peelnet_statistics(float alpha_5, float zeta_4, vec4 quantiles_2) {
+    PeelnetPlace _e3 = peelnet_place(alpha_5, zeta_4, quantiles_2);
+    vec2 _e4 = peelnet_records(alpha_5, _e3);
+    vec4 _e8 = peelnet_in_slab(_e3.absorbance, _e3.slab, 0.0);
+    vec4 _e12 = peelnet_in_slab(_e4.x, _e3.slab, PEELNET_EMPTY);
+    vec4 _e18 = peelnet_in_slab((_e3.absorbance * _e3.inside), _e3.slab, 0.0);
+    vec4 _e22 = peelnet_in_slab(_e4.y, _e3.slab, PEELNET_EMPTY);
+    return PeelnetStatistics(_e8, _e12, _e22, _e18);
 }
 
-vec2 peelnet_fragment(float alpha_5, float t_2, vec4 absorbances_1, vec4 nearest_1, vec4 farthest_1, vec4 firsts_1) {
-    PeelnetPlace _e6 = peelnet_place(alpha_5, t_2);
-    vec2 _e10 = peelnet_weigh(_e6, (alpha_5 >= PEELNET_FAINT), absorbances_1, firsts_1, nearest_1, farthest_1, 4.0);
-    return _e10;
+vec2 peelnet_fragment(float alpha_6, float zeta_5, vec4 quantiles_3, vec4 absorbances_1, vec4 nearest_2, vec4 farthest_1, vec4 firsts_1) {
+    PeelnetPlace _e7 = peelnet_place(alpha_6, zeta_5, quantiles_3);
+    vec2 _e11 = peelnet_weigh(_e7, (alpha_6 >= PEELNET_FAINT), absorbances_1, firsts_1, nearest_2, farthest_1, 4.0);
+    return _e11;
 }
 
 vec4 peelnet_composite(vec4 sums, float coverage, vec3 transmittance, vec3 background) {
@@ -417,7 +464,7 @@ vec4 peelnet_resolve(vec4 sums_1, float absorbance_1, vec3 background_1) {
 
 float peelnet_weight(float root_absorbance_1, float place_fraction_1, float mean_fraction_1, float share_low_1, float share_high_1, float root_own_1, float half_extent_1, float of_own_1, float of_nearest_1) {
     float root = clamp(root_absorbance_1, 0.0, 256.0);
-    float _e39 = peelnet_share(clamp(root_absorbance_1, -46650.96, 46662.758), clamp(place_fraction_1, -3139.3584, 3140.751), clamp(mean_fraction_1, -2176.8862, 2178.2773), clamp(share_low_1, -1791.4802, 1791.7402), clamp(share_high_1, -2751.7651, 2753.417), clamp(root_own_1, -5687.959, 5689.5596), clamp(half_extent_1, -2164.8708, 2166.4324), clamp(of_own_1, -1736.1511, 1737.9824), clamp(of_nearest_1, -1725.541, 1727.3652));
+    float _e39 = peelnet_share(clamp(root_absorbance_1, -46907.754, 46920.56), clamp(place_fraction_1, -2701.5933, 2702.8691), clamp(mean_fraction_1, -1894.8453, 1896.1141), clamp(share_low_1, -1809.0114, 1809.2499), clamp(share_high_1, -2216.0457, 2217.7444), clamp(root_own_1, -5818.859, 5820.524), clamp(half_extent_1, -2533.2336, 2534.5876), clamp(of_own_1, -1668.3019, 1670.152), clamp(of_nearest_1, -1680.1552, 1681.9999));
     vec2 bounds = clamp(vec2(share_low_1, share_high_1), vec2(0.0), vec2(1.0));
     return exp(((-(root) * root) * mix(bounds.x, bounds.y, _e39)));
 }

@@ -3,51 +3,53 @@
 // WGSL, plain WebGPU. Compiled by naga, and run on a GPU against the network at every export.
 // Network: 9-12-1 (Relu hidden, Sigmoid last), 133 parameters, 120 multiply-adds. Recipe large, seed 1, 80 epochs.
 // Answers: transmittance of what lies between a slab's known ends, exp(-absorbance * share) with absorbance = root_absorbance^2 and share in share_low .. share_high.
-// Input 0: root_absorbance (root of the absorbance between the slab's ends), 0.0 .. 21.107838 in training.
+// Input 0: root_absorbance (root of the absorbance between the slab's ends), 0.0 .. 21.30343 in training.
 // Input 1: place_fraction (of the way between the slab's ends), 0.0 .. 1.0 in training.
 // Input 2: mean_fraction (of the way between the slab's ends), 0.0 .. 1.0 in training.
 // Input 3: share_low (of the absorbance between the slab's ends), 0.0 .. 1.0 in training.
 // Input 4: share_high (of the absorbance between the slab's ends), 0.0 .. 1.0 in training.
 // Input 5: root_own (root of the fragment's absorbance), 0.031630483 .. 2.4013393 in training.
 // Input 6: half_extent (half of the way between the slab's ends, in slabs), 0.00052083336 .. 1.0 in training.
-// Input 7: of_own (absorbance between the ends, of that and the fragment's), 0.0 .. 0.9999906 in training.
+// Input 7: of_own (absorbance between the ends, of that and the fragment's), 0.0 .. 0.9999905 in training.
 // Input 8: of_nearest (absorbance between the ends, of that and the nearer end's), 0.0 .. 1.0 in training.
 // Trained on 21565798 rows of boxes, cups, foliage, intersecting, opaque-mix, panes, sixteen-025, sixteen-050, sixteen-075, sixteen-085, sixteen-random-alpha, sixteen-random-color, smoke-100, smoke-30, synthetic (dataset f0e6c4a7cca08d560f99a5be9cbd1514bf8be352632a347602bf08363695fd29+e22e844788a454658277e87e23685b5ffa00e3ad2d48cb833cc53130eaf4d8b7).
-// Loss: training 0.000105, validation 0.000098, test 0.000103.
-// Held-out error, mean |T - T_exact|: boxes-held 0.00160, cups-held 0.00136, foliage-held 0.00038, panes-held 0.00009, sixteen-held 0.00023, smoke-held 0.00333.
+// Loss: training 0.000108, validation 0.000090, test 0.000108.
+// Held-out error, mean |T - T_exact|: boxes-held 0.00185, cups-held 0.00179, foliage-held 0.00090, panes-held 0.00053, sixteen-held 0.00043, smoke-held 0.00252.
 //
 // Self-tests, to some roundings of 32 bits; weights and colours also to those of 16-bit targets.
-// peelnet_weight(0.2954644, 0.13589168, 0.26682287, 0.7078695, 0.5534122, 0.8413221, 0.6951227, 0.3716183, 0.9624051) = 0.945929
-// peelnet_weight(2.6873326, 0.2162394, 0.7240006, 0.37958002, 0.26558614, 1.9607327, 0.5804378, 0.90978944, 0.04841405) = 0.065241195
-// peelnet_weight(1.176659, 0.55773175, 0.41844797, 0.7173642, 0.44993675, 1.6151378, 0.48404527, 0.3332267, 0.6325573) = 0.41662478
+// peelnet_weight(0.484543, 0.67085797, 0.16887921, 0.7373583, 0.19208878, 0.1129206, 0.12900263, 0.43583515, 0.7663156) = 0.88658637
+// peelnet_weight(2.7122345, 0.2162394, 0.7240006, 0.37958002, 0.26558614, 1.9607327, 0.5804378, 0.9097894, 0.04841405) = 0.0690707
+// peelnet_weight(1.1875623, 0.55773175, 0.41844797, 0.7173642, 0.44993675, 1.6151378, 0.48404527, 0.33322668, 0.6325573) = 0.4769692
 // Four fragments of a pixel, near 1.0, far 8.0, background 0.25, 0.5, 0.75:
 //    z 1.0, alpha 0.5, rgb 1.0, 0.0, 0.0: zeta -1.0, weight 1.0
 //    z 2.0, alpha 0.5, rgb 0.0, 1.0, 0.0: zeta -0.33333334, weight 0.5
 //    z 4.0, alpha 0.5, rgb 0.0, 0.0, 1.0: zeta 0.33333334, weight 0.25
 //    z 8.0, alpha 0.9, rgb 1.0, 1.0, 1.0: zeta 1.0, weight 0.125
-//    target bins_front: 0.17254902, 0.0, 0.14509805, 0.02745098
-//    target bins_back: 0.02745098, 0.14509805, 0.0, 0.5764706
-//    target range: 1.0, 1.0
 //    target absorbances: 0.6931472, 0.6931472, 0.6931472, 2.302585
-//    target nearest: 64928.0, 0.0072517395, 0.033599854, -64768.0
-//    target farthest: -65088.0, -0.007270813, -0.03375244, 65248.0
-//    target firsts: -0.6931472, -0.15837766, -0.20979747, 2.302585
+//    target nearest: 64928.0, 678.5, 0.22814941, -64768.0
+//    target farthest: -65088.0, -681.0, -0.22875977, 65248.0
+//    target firsts: -0.6931472, -0.5391145, -0.27305797, 2.302585
 //    colour of the pixel: 0.615625, 0.36875, 0.246875
 //
 // How to draw with it. Targets may have 32 bits a channel wherever 16 are named.
-// 0. zeta = peelnet_zeta(z, near, far): z is the distance along the view axis, near and far the range of z that the bounding boxes of the transparent objects in view span, clipped to the camera's. A tight range matters more than anything else you choose. Compute zeta with this function in all passes. Its range is the same for the whole frame: peelnet_zeta_in(z, peelnet_range(near, far)) is the same value, and the range may be passed in. Where boxes show that nothing lies between two depths, use peelnet_cut(zeta, gaps) for zeta in all passes: it leaves up to two such gaps out.
-// 1. Pass "range": draw all transparent surfaces, in any order. let bins = peelnet_bins(alpha, zeta);
-//    bins_front: rgba8unorm, cleared to 0, blending ADD, from bins.front
-//    bins_back: rgba8unorm, cleared to 0, blending ADD, from bins.back
-//    range: rg8unorm, cleared to 0, blending MAX, from bins.range
-// 2. Pass "statistics": draw all transparent surfaces, in any order. let s = peelnet_statistics(alpha, peelnet_in_pixel(zeta, bins_front, bins_back, range));
+// 0. zeta = peelnet_zeta(z, near, far): z is the distance along the view axis, near and far the range of z that the bounding boxes of the transparent objects in view span, clipped to the camera's. The tighter the range, the less errs. Compute zeta with this function in all passes. Its range is the same for the whole frame: peelnet_zeta_in(z, peelnet_range(near, far)) is the same value, and the range may be passed in. Where boxes show that nothing lies between two depths, use peelnet_cut(zeta, gaps) for zeta in all passes: it leaves up to two such gaps out. quantiles says where among the depths around the pixel most is seen: peelnet_even() where nothing is known but near and far, with several times the error.
+//    quantiles: rgba8unorm, a texture of one texel for 8 by 8 pixels, read with linear interpolation; peelnet_even() where it is not drawn.
+//    At its size, draw all transparent surfaces, in any order. let bins = peelnet_tile_bins(alpha, zeta);
+//    bins_a: rgba8unorm, cleared to 0, blending ADD, from bins[0]
+//    bins_b: rgba8unorm, cleared to 0, blending ADD, from bins[1]
+//    bins_c: rgba8unorm, cleared to 0, blending ADD, from bins[2]
+//    bins_d: rg8unorm, cleared to 0, blending ADD, from bins[3].xy
+//    bins_e: rg8unorm, cleared to 0, blending ADD, from bins[3].zw
+//    tile_nearest: r16float, cleared to -65504, blending MAX, from peelnet_tile_nearest(alpha, zeta)
+//    Then each of its texels is peelnet_quantiles(sum): sum adds, over the 3 by 3 texels around it, peelnet_tile_seen(mat4x4f(bins_a, bins_b, bins_c, vec4f(bins_d, bins_e)), tile_nearest).
+// 1. Pass "statistics": draw all transparent surfaces, in any order. let s = peelnet_statistics(alpha, zeta, quantiles);
 //    absorbances: rgba16float, cleared to 0, blending ADD, from s.absorbances
 //    nearest: rgba16float, cleared to -65504, blending MAX, from s.nearest
 //    farthest: rgba16float, cleared to -65504, blending MAX, from s.farthest
 //    firsts: rgba16float, cleared to 0, blending ADD, from s.firsts
-// 3. Pass "weights": draw all transparent surfaces, in any order. let w = peelnet_fragment(alpha, peelnet_in_pixel(zeta, bins_front, bins_back, range), absorbances, nearest, farthest, firsts).x;
+// 2. Pass "weights": draw all transparent surfaces, in any order. let w = peelnet_fragment(alpha, zeta, quantiles, absorbances, nearest, farthest, firsts).x;
 //    sums: rgba16float, cleared to 0, blending ADD, from vec4f(alpha * rgb, alpha) * w
-// 4. Resolve: peelnet_resolve(sums, absorbances.x + absorbances.y + absorbances.z + absorbances.w, background) is the colour of the pixel, and its coverage in alpha.
+// 3. Resolve: peelnet_resolve(sums, absorbances.x + absorbances.y + absorbances.z + absorbances.w, background) is the colour of the pixel, and its coverage in alpha.
 // - alpha is opacity, rgb the linear colour that is not multiplied by it. Resolve before tone mapping and encoding.
 // - Test depth against the opaque surfaces, do not write it: a depth prepass with transparent surfaces in it hides what lies behind.
 // - z grows with distance, also where depth buffers are reversed.
@@ -135,6 +137,104 @@ fn peelnet_seen_behind(before: f32, bins: vec4f) -> vec4f {
     return exp(levels * (-255.0 / PEELNET_BIN_LEVELS));
 }
 
+// Bins of depth, and levels of opacity in each, of the nearest fragment of a tile's pixel.
+const PEELNET_TILE_DEPTHS: f32 = 240.0;
+const PEELNET_TILE_OPACITIES: f32 = 256.0;
+
+// The quantiles of a frame of which only near and far are known.
+fn peelnet_even() -> vec4f {
+    return vec4f(0.06, 0.35, 0.65, 0.94);
+}
+
+// Where a depth, 0 .. 1 of the frame's, lies among quantiles, 0 .. 1.
+fn peelnet_place_among(depth: f32, quantiles: vec4f) -> f32 {
+    let begin = vec4f(0.0, quantiles.xyz);
+    let parts = clamp((vec4f(depth) - begin) / max(quantiles - begin, vec4f(1e-4)), vec4f(0.0), vec4f(1.0));
+    let last = clamp((depth - quantiles.w) / max(1.0 - quantiles.w, 1e-4), 0.0, 1.0);
+    return dot(parts, vec4f(0.06, 0.29, 0.3, 0.29)) + 0.06 * last;
+}
+
+// What a level adds to sixteen bins of depth: four in a column, nearest first.
+fn peelnet_tile_levels(level: f32, depth: f32) -> mat4x4f {
+    let place = clamp(depth * 16.0 - 0.5, 0.0, 15.0);
+    return mat4x4f(
+        peelnet_in_bins(level, place, 0.0),
+        peelnet_in_bins(level, place, 4.0),
+        peelnet_in_bins(level, place, 8.0),
+        peelnet_in_bins(level, place, 12.0),
+    );
+}
+
+// What a fragment adds to the bins of its tile, of 8 bits.
+fn peelnet_tile_bins(alpha: f32, zeta: f32) -> mat4x4f {
+    return peelnet_tile_levels(peelnet_level(peelnet_absorbance(alpha)), 0.5 * zeta + 0.5);
+}
+
+// What a fragment writes as the nearest of its tile's pixel, where the most is kept.
+fn peelnet_tile_nearest(alpha: f32, zeta: f32) -> f32 {
+    let b = peelnet_absorbance(alpha);
+    let bin = min(floor((0.5 * zeta + 0.5) * PEELNET_TILE_DEPTHS), PEELNET_TILE_DEPTHS - 1.0);
+    let opacity = floor(b / (b + 1.0) * (1.0625 * (PEELNET_TILE_OPACITIES - 1.0)) + 0.5);
+    return peelnet_halves(vec3f((PEELNET_TILE_DEPTHS - 1.0 - bin) * PEELNET_TILE_OPACITIES + opacity)).x;
+}
+
+// What the columns of bins before each hold together.
+fn peelnet_before(bins: mat4x4f) -> vec4f {
+    let all = vec4f(1.0) * bins;
+    return vec4f(0.0, all.x, all.x + all.y, all.x + all.y + all.z);
+}
+
+// Of four bins what is seen behind the nearest fragment. before: what all bins before them hold.
+fn peelnet_seen(bins: vec4f, taken: vec4f, before: f32) -> vec4f {
+    let through = peelnet_seen_behind(before, bins);
+    let seen = vec4f(exp(before * (-255.0 / PEELNET_BIN_LEVELS)), through.xyz) - through;
+    return seen * max(bins - taken, vec4f(0.0)) / max(bins, vec4f(1.0 / 255.0));
+}
+
+// What is seen in a tile's pixel behind its nearest fragment. bins, nearest: as the targets hold them.
+fn peelnet_tile_seen(bins: mat4x4f, nearest: f32) -> mat4x4f {
+    let level = max(peelnet_levels(vec3f(nearest)).x, 0.0);
+    let back = floor(level * (1.0 / PEELNET_TILE_OPACITIES));
+    let opacity = (level - back * PEELNET_TILE_OPACITIES) * (1.0 / (PEELNET_TILE_OPACITIES - 1.0));
+    let depth = (PEELNET_TILE_DEPTHS - back - 0.5) / PEELNET_TILE_DEPTHS;
+    let taken = peelnet_tile_levels(peelnet_level(opacity / (1.0625 - opacity)), depth);
+    let before = peelnet_before(bins);
+    return mat4x4f(
+        peelnet_seen(bins[0], taken[0], before.x),
+        peelnet_seen(bins[1], taken[1], before.y),
+        peelnet_seen(bins[2], taken[2], before.z),
+        peelnet_seen(bins[3], taken[3], before.w),
+    );
+}
+
+// How many of four bins lie before a share. before: what the bins before them hold.
+fn peelnet_passed(share: f32, before: f32, bins: vec4f) -> f32 {
+    let two = bins.x + bins.y;
+    let begin = vec4f(before) + vec4f(0.0, bins.x, two, two + bins.z);
+    return dot(clamp((vec4f(share) - begin) / max(bins, vec4f(1e-9)), vec4f(0.0), vec4f(1.0)), vec4f(1.0));
+}
+
+// The depth before which a share of sixteen bins lies. before: as of peelnet_before.
+fn peelnet_depth_at(share: f32, bins: mat4x4f, before: vec4f) -> f32 {
+    let front = peelnet_passed(share, before.x, bins[0]) + peelnet_passed(share, before.y, bins[1]);
+    return 0.0625 * (front + peelnet_passed(share, before.z, bins[2]) + peelnet_passed(share, before.w, bins[3]));
+}
+
+// The quantiles of what is seen in nine pixels together.
+fn peelnet_quantiles(seen: mat4x4f) -> vec4f {
+    // Evenly spread where nothing is known.
+    let even = vec4f(0.00125);
+    let bins = seen + mat4x4f(even, even, even, even);
+    let before = peelnet_before(bins);
+    let shares = peelnet_even() * (before.w + dot(bins[3], vec4f(1.0)));
+    return vec4f(
+        peelnet_depth_at(shares.x, bins, before),
+        peelnet_depth_at(shares.y, bins, before),
+        peelnet_depth_at(shares.z, bins, before),
+        peelnet_depth_at(shares.w, bins, before),
+    );
+}
+
 // Fragments of less opacity are composited, but are never a slab's nearest or farthest.
 const PEELNET_FAINT: f32 = 0.003921569;
 // Bins of depth in a slab, and levels of opacity in each, that its nearest and its farthest fragment are kept with.
@@ -175,64 +275,9 @@ struct PeelnetBetween {
     nearest: f32,
 }
 
-// What is known of a pixel's depths, in 8 bits.
-struct PeelnetBins {
-    // Absorbances of eight bins of the frame's depth, nearest first.
-    front: vec4f,
-    back: vec4f,
-    // The level of the nearest depth, counted from the far end, and of the farthest.
-    range: vec2f,
-}
-
-// The two ends of a pixel that a depth alone would have: its level counted from the far end, rounded down from the near one, and its level,
-// rounded up. Of each the most is kept.
-fn peelnet_range_of(zeta: f32) -> vec2f {
-    let level = 127.5 * (zeta + 1.0);
-    return vec2f(255.0 - floor(level), ceil(level)) / 255.0;
-}
-
-// The levels, 0 .. 255, of the nearest and of the farthest depth of a pixel, at least one apart.
-fn peelnet_ends_of(range: vec2f) -> vec2f {
-    let levels = floor(range * 255.0 + 0.5);
-    let nearest = 255.0 - levels.x;
-    return vec2f(nearest, max(levels.y, nearest + 1.0));
-}
-
-// What a fragment writes: what it adds to the bins, and its depth.
-fn peelnet_bins(alpha: f32, zeta: f32) -> PeelnetBins {
-    let place = clamp(zeta * 4.0 + 3.5, 0.0, 7.0);
-    let level = peelnet_level(peelnet_absorbance(alpha));
-    return PeelnetBins(peelnet_in_bins(level, place, 0.0), peelnet_in_bins(level, place, 4.0), peelnet_range_of(zeta));
-}
-
-// How much of eight bins lies before a place among them: twice that, and a number that is the same for all places.
-fn peelnet_up_to(place: f32, front: vec4f, back: vec4f) -> f32 {
-    // A bin's own part is half of 1 + |place - its begin| - |place - its end|.
-    let a = abs(vec4f(place) - vec4f(0.0, 1.0, 2.0, 3.0));
-    let b = abs(vec4f(place) - vec4f(4.0, 5.0, 6.0, 7.0));
-    return dot(front, a - vec4f(a.yzw, b.x)) + dot(back, b - vec4f(b.yzw, abs(place - 8.0)));
-}
-
-// Where a depth lies in its pixel, 0 .. 1, by what is known of the pixel's depths: between its ends each bin takes as much as its length times
-// the root of what is seen of it. Where all bins are empty, it is the root of the frame's depth.
-fn peelnet_in_pixel(zeta: f32, front: vec4f, back: vec4f, range: vec2f) -> f32 {
-    let place = zeta * 4.0 + 4.0;
-    let near = peelnet_seen_behind(0.0, front);
-    let far = peelnet_seen_behind(dot(front, vec4f(1.0)), back);
-    let of_front = sqrt(abs(vec4f(1.0, near.xyz) - near));
-    let of_back = sqrt(abs(vec4f(near.w, far.xyz) - far));
-    // In bins.
-    let ends = peelnet_ends_of(range) * (8.0 / 255.0);
-    let begin = peelnet_up_to(ends.x, of_front, of_back);
-    let end = peelnet_up_to(ends.y, of_front, of_back);
-    let all = end - begin;
-    let passed = (peelnet_up_to(place, of_front, of_back) - begin) / max(all, 1e-6);
-    return select(clamp(passed, 0.0, 1.0), sqrt(place * 0.125), all == 0.0);
-}
-
-// t: where in its pixel the fragment lies, 0 .. 1.
-fn peelnet_place(alpha: f32, t: f32) -> PeelnetPlace {
+fn peelnet_place(alpha: f32, zeta: f32, quantiles: vec4f) -> PeelnetPlace {
     let b = peelnet_absorbance(alpha);
+    let t = peelnet_place_among(0.5 * zeta + 0.5, quantiles);
     let first = select(0.0, 1.0, t >= PEELNET_FIRST_END);
     let passed = first + select(0.0, 1.0, t >= PEELNET_SECOND_END) + select(0.0, 1.0, t >= PEELNET_THIRD_END);
     let slab = min(passed, PEELNET_LAST_SLAB);
@@ -355,9 +400,9 @@ fn peelnet_weigh(
 }
 
 // Where a slab ends and the next begins, in the pixel, and the number of the last slab.
-const PEELNET_FIRST_END: f32 = 0.34;
-const PEELNET_SECOND_END: f32 = 0.68;
-const PEELNET_THIRD_END: f32 = 0.87;
+const PEELNET_FIRST_END: f32 = 0.3;
+const PEELNET_SECOND_END: f32 = 0.6;
+const PEELNET_THIRD_END: f32 = 0.82;
 const PEELNET_LAST_SLAB: f32 = 3.0;
 
 struct PeelnetStatistics {
@@ -370,9 +415,9 @@ struct PeelnetStatistics {
     firsts: vec4f,
 }
 
-// What a fragment adds to its pixel's statistics. t: where in its pixel it lies, as peelnet_in_pixel has it.
-fn peelnet_statistics(alpha: f32, t: f32) -> PeelnetStatistics {
-    let place = peelnet_place(alpha, t);
+// What a fragment adds to its pixel's statistics.
+fn peelnet_statistics(alpha: f32, zeta: f32, quantiles: vec4f) -> PeelnetStatistics {
+    let place = peelnet_place(alpha, zeta, quantiles);
     let halves = peelnet_records(alpha, place);
     let absorbances = peelnet_in_slab(place.absorbance, place.slab, 0.0);
     let nearest = peelnet_in_slab(halves.x, place.slab, PEELNET_EMPTY);
@@ -384,13 +429,14 @@ fn peelnet_statistics(alpha: f32, t: f32) -> PeelnetStatistics {
 // The weight of a fragment, and whether it is known without the network.
 fn peelnet_fragment(
     alpha: f32,
-    t: f32,
+    zeta: f32,
+    quantiles: vec4f,
     absorbances: vec4f,
     nearest: vec4f,
     farthest: vec4f,
     firsts: vec4f,
 ) -> vec2f {
-    let place = peelnet_place(alpha, t);
+    let place = peelnet_place(alpha, zeta, quantiles);
     return peelnet_weigh(place, alpha >= PEELNET_FAINT, absorbances, firsts, nearest, farthest, 4.0);
 }
 
@@ -418,22 +464,22 @@ fn peelnet_share(root_absorbance: f32, place_fraction: f32, mean_fraction: f32, 
     let input_a = vec4f(root_absorbance, place_fraction, mean_fraction, share_low);
     let input_b = vec4f(share_high, root_own, half_extent, of_own);
     let input_c = vec4f(of_nearest, 0.0, 0.0, 0.0);
-    let layer_a_a = max(vec4f(2.5333376, 0.070135444, 6.55761, 9.338499)
-        + mat4x4f(vec4f(0.06938627, -0.18546443, -0.16126896, -0.0978224), vec4f(-2.8618555, 1.1962174, -2.2454934, -1.967748), vec4f(-1.3940566, -3.5056498, -1.1702229, -1.1813458), vec4f(-1.0886809, -0.014783437, -3.0635908, -1.4621649)) * input_a
-        + mat4x4f(vec4f(-0.6980536, 1.7846111, 0.25155202, -0.0022205736), vec4f(-0.17082416, -0.13570544, 0.13718012, -0.7164993), vec4f(-0.059486482, 1.4970536, -1.5278703, -3.0911248), vec4f(-0.45216277, 0.646417, -0.11476041, -1.99819)) * input_b
-        + vec4f(-0.2150367, 0.05851872, -1.1947396, -1.0811282) * input_c.x, vec4f(0.0));
-    let layer_a_b = max(vec4f(8.595566, -2.1603658, -4.6171513, 4.446983)
-        + mat4x4f(vec4f(0.046490982, -0.021122804, -0.0967739, -0.05729483), vec4f(-2.5474672, 1.0714152, -1.9551623, 2.394742), vec4f(-5.0801864, 3.263625, -0.07937207, -2.860324), vec4f(-4.577743, 1.0223571, 6.441565, 4.304795)) * input_a
-        + mat4x4f(vec4f(-2.6261086, 1.7954695, 1.8110046, 0.93702084), vec4f(0.53599936, 0.5783657, 0.38734752, -1.5262477), vec4f(-1.0452762, -3.8572392, 2.4509215, -1.5024484), vec4f(-0.32625282, 0.08800727, 4.724238, -0.42166162)) * input_b
-        + vec4f(0.3956092, -0.30297762, -2.0267947, -1.7356248) * input_c.x, vec4f(0.0));
-    let layer_a_c = max(vec4f(4.4543576, -2.973365, -7.652848, 0.42543393)
-        + mat4x4f(vec4f(0.029131893, 0.18631081, 0.13666841, 0.16539651), vec4f(-0.26469445, 1.1132456, 0.82761866, -1.2643151), vec4f(-0.783623, -0.6680362, -1.178817, 0.2704268), vec4f(-1.805566, 0.664728, -5.7957106, -4.446497)) * input_a
-        + mat4x4f(vec4f(-2.092326, 5.091627, 1.0575033, -2.1673481), vec4f(0.5481401, -0.061678205, 1.246126, -0.46817154), vec4f(1.2582825, 0.33472043, 0.6918554, 1.199201), vec4f(-3.7064905, -4.3939705, 3.915088, -4.182435)) * input_b
-        + vec4f(-1.6668515, -0.2672489, 2.1147249, 4.4725013) * input_c.x, vec4f(0.0));
-    let layer_b_a = 1.0 / (1.0 + exp(min(-(-0.5501553
-        + dot(vec4f(-1.4394537, 0.49696675, -0.45589456, -0.36356), layer_a_a)
-        + dot(vec4f(0.51607615, 0.32655874, -0.5143021, 0.58047265), layer_a_b)
-        + dot(vec4f(-0.9152549, 1.665513, -0.56657845, -0.7014192), layer_a_c)), 80.0)));
+    let layer_a_a = max(vec4f(0.7082578, -3.5820465, -3.005874, 5.875387)
+        + mat4x4f(vec4f(-0.005105822, -0.3286876, 0.048821513, -0.13456222), vec4f(-3.3188956, -0.026648695, -0.3899754, -1.9027017), vec4f(-0.82351637, 0.005685166, 2.5049596, -2.831827), vec4f(-0.43040735, 1.5429169, -7.2741995, -1.2681906)) * input_a
+        + mat4x4f(vec4f(-0.75191647, 1.8230765, 0.58691657, 0.34909603), vec4f(-0.064772345, 0.51947457, -0.3702163, 0.8569079), vec4f(0.16480353, 0.8260518, 1.0607253, 1.4038762), vec4f(-0.5772384, 0.55815375, -1.9842545, -2.9378307)) * input_b
+        + vec4f(1.0990607, 2.9000716, 3.3847952, -0.44497156) * input_c.x, vec4f(0.0));
+    let layer_a_b = max(vec4f(6.5070996, -1.3105907, -4.6976385, 2.869873)
+        + mat4x4f(vec4f(-0.13199525, 0.20203054, 0.15890752, -0.09989472), vec4f(-1.9383106, 1.0660152, -1.9112885, 2.7403), vec4f(-4.990838, -0.44386223, -0.20353511, -0.6259148), vec4f(-4.5988, 3.1177535, -0.48814595, -3.1149778)) * input_a
+        + mat4x4f(vec4f(-0.37457332, 4.319807, 0.36671373, -1.1487457), vec4f(0.3489128, -0.3690539, -1.9590429, -1.5051035), vec4f(-0.20200513, -0.2560703, 2.5463088, 1.6114689), vec4f(-2.1301358, -4.8727465, -1.4359399, 1.4264619)) * input_b
+        + vec4f(1.1803893, -0.22580642, 5.219606, -3.1420977) * input_c.x, vec4f(0.0));
+    let layer_a_c = max(vec4f(6.3488297, -2.1874573, -1.51283, -4.5364575)
+        + mat4x4f(vec4f(0.034802686, -0.009735772, 0.21353258, -0.0063673602), vec4f(-0.8877908, -1.6347204, -0.1412491, 0.73567724), vec4f(0.2703797, -0.7277027, -3.5090938, 1.1734997), vec4f(-3.6329007, 4.6404023, -6.4219174, -5.6560946)) * input_a
+        + mat4x4f(vec4f(-3.6939406, -1.9516546, 0.14241646, -1.354015), vec4f(0.11682509, 0.79115266, 0.5775363, -1.0267948), vec4f(0.33704478, 3.323818, -0.079797864, 1.3801761), vec4f(-4.082955, -0.94698524, -0.4084194, 5.40172)) * input_b
+        + vec4f(-0.51515675, 2.002943, 3.1268444, 0.9330572) * input_c.x, vec4f(0.0));
+    let layer_b_a = 1.0 / (1.0 + exp(min(-(-0.93166846
+        + dot(vec4f(-3.6211195, 0.5825937, -0.32378608, -0.3979195), layer_a_a)
+        + dot(vec4f(0.36350596, 1.2450213, 0.7082416, 0.38062564), layer_a_b)
+        + dot(vec4f(-0.60285634, 0.50670636, -0.5195065, -0.36412972), layer_a_c)), 80.0)));
     return layer_b_a;
 }
 
@@ -441,7 +487,7 @@ fn peelnet_share(root_absorbance: f32, place_fraction: f32, mean_fraction: f32, 
 fn peelnet_weight(root_absorbance: f32, place_fraction: f32, mean_fraction: f32, share_low: f32, share_high: f32, root_own: f32, half_extent: f32, of_own: f32, of_nearest: f32) -> f32 {
     let root = clamp(root_absorbance, 0.0, 256.0);
     let share = peelnet_share(
-        clamp(root_absorbance, -46650.96, 46662.758), clamp(place_fraction, -3139.3584, 3140.751), clamp(mean_fraction, -2176.8862, 2178.2773), clamp(share_low, -1791.4802, 1791.7402), clamp(share_high, -2751.7651, 2753.417), clamp(root_own, -5687.959, 5689.5596), clamp(half_extent, -2164.8708, 2166.4324), clamp(of_own, -1736.1511, 1737.9824), clamp(of_nearest, -1725.541, 1727.3652));
+        clamp(root_absorbance, -46907.754, 46920.56), clamp(place_fraction, -2701.5933, 2702.8691), clamp(mean_fraction, -1894.8453, 1896.1141), clamp(share_low, -1809.0114, 1809.2499), clamp(share_high, -2216.0457, 2217.7444), clamp(root_own, -5818.859, 5820.524), clamp(half_extent, -2533.2336, 2534.5876), clamp(of_own, -1668.3019, 1670.152), clamp(of_nearest, -1680.1552, 1681.9999));
     let bounds = clamp(vec2f(share_low, share_high), vec2f(0.0), vec2f(1.0));
     return exp(-root * root * mix(bounds.x, bounds.y, share));
 }

@@ -3,49 +3,51 @@
 // Metal 2.4. No Metal compiler was at hand: this text was translated from WGSL that was compiled and run, and has not been compiled itself.
 // Network: 9-13-1 (Relu hidden, Sigmoid last), 144 parameters, 130 multiply-adds. Recipe medium, seed 1, 80 epochs.
 // Answers: transmittance of what lies between a slab's known ends, exp(-absorbance * share) with absorbance = root_absorbance^2 and share in share_low .. share_high.
-// Input 0: root_absorbance (root of the absorbance between the slab's ends), 0.0 .. 21.25096 in training.
+// Input 0: root_absorbance (root of the absorbance between the slab's ends), 0.0 .. 21.359003 in training.
 // Input 1: place_fraction (of the way between the slab's ends), 0.0 .. 1.0 in training.
 // Input 2: mean_fraction (of the way between the slab's ends), 0.0 .. 1.0 in training.
 // Input 3: share_low (of the absorbance between the slab's ends), 0.0 .. 1.0 in training.
 // Input 4: share_high (of the absorbance between the slab's ends), 0.0 .. 1.0 in training.
 // Input 5: root_own (root of the fragment's absorbance), 0.031630483 .. 2.4013393 in training.
 // Input 6: half_extent (half of the way between the slab's ends, in slabs), 0.00052083336 .. 1.0 in training.
-// Input 7: of_own (absorbance between the ends, of that and the fragment's), 0.0 .. 0.9999915 in training.
+// Input 7: of_own (absorbance between the ends, of that and the fragment's), 0.0 .. 0.9999906 in training.
 // Input 8: of_nearest (absorbance between the ends, of that and the nearer end's), 0.0 .. 1.0 in training.
 // Trained on 21565798 rows of boxes, cups, foliage, intersecting, opaque-mix, panes, sixteen-025, sixteen-050, sixteen-075, sixteen-085, sixteen-random-alpha, sixteen-random-color, smoke-100, smoke-30, synthetic (dataset f0e6c4a7cca08d560f99a5be9cbd1514bf8be352632a347602bf08363695fd29+e22e844788a454658277e87e23685b5ffa00e3ad2d48cb833cc53130eaf4d8b7).
-// Loss: training 0.000147, validation 0.000138, test 0.000150.
-// Held-out error, mean |T - T_exact|: boxes-held 0.00280, cups-held 0.00251, foliage-held 0.00075, panes-held 0.00025, sixteen-held 0.00059, smoke-held 0.00570.
+// Loss: training 0.000156, validation 0.000150, test 0.000147.
+// Held-out error, mean |T - T_exact|: boxes-held 0.00280, cups-held 0.00284, foliage-held 0.00148, panes-held 0.00086, sixteen-held 0.00092, smoke-held 0.00365.
 //
 // Self-tests, to some roundings of 32 bits; weights and colours also to those of 16-bit targets.
-// peelnet_weight(0.48334956, 0.67085797, 0.16887921, 0.7373583, 0.19208878, 0.1129206, 0.12900263, 0.43583557, 0.7663156) = 0.8680153
-// peelnet_weight(0.2974678, 0.13589168, 0.26682287, 0.7078695, 0.5534122, 0.8413221, 0.6951227, 0.37161863, 0.9624051) = 0.9411046
-// peelnet_weight(2.7055542, 0.2162394, 0.7240006, 0.37958002, 0.26558614, 1.9607327, 0.5804378, 0.9097903, 0.04841405) = 0.066045314
+// peelnet_weight(0.485807, 0.67085797, 0.16887921, 0.7373583, 0.19208878, 0.1129206, 0.12900263, 0.43583518, 0.7663156) = 0.92490417
+// peelnet_weight(0.29898018, 0.13589168, 0.26682287, 0.7078695, 0.5534122, 0.8413221, 0.6951227, 0.3716183, 0.9624051) = 0.9390335
+// peelnet_weight(2.7193098, 0.2162394, 0.7240006, 0.37958002, 0.26558614, 1.9607327, 0.5804378, 0.90978944, 0.04841405) = 0.06794879
 // Four fragments of a pixel, near 1.0, far 8.0, background 0.25, 0.5, 0.75:
 //    z 1.0, alpha 0.5, rgb 1.0, 0.0, 0.0: zeta -1.0, weight 1.0
 //    z 2.0, alpha 0.5, rgb 0.0, 1.0, 0.0: zeta -0.33333334, weight 0.5
 //    z 4.0, alpha 0.5, rgb 0.0, 0.0, 1.0: zeta 0.33333334, weight 0.25
 //    z 8.0, alpha 0.9, rgb 1.0, 1.0, 1.0: zeta 1.0, weight 0.125
-//    target bins_front: 0.17254902, 0.0, 0.14509805, 0.02745098
-//    target bins_back: 0.02745098, 0.14509805, 0.0, 0.5764706
-//    target range: 1.0, 1.0
-//    target absorbances: 1.3862944, 0.6931472, 2.302585, -0.011217061
-//    target nearest: 64928.0, -25.28125, -64768.0, 0.42932084
-//    target farthest: 49568.0, 25.203125, 65248.0, 2.302585
+//    target absorbances: 1.3862944, 0.6931472, 2.302585, -0.23104906
+//    target nearest: 64928.0, -3.4101562, -64768.0, 0.3630771
+//    target farthest: 64.8125, 3.4003906, 65248.0, 2.302585
 //    colour of the pixel: 0.615625, 0.36875, 0.246875
 //
 // How to draw with it. Targets may have 32 bits a channel wherever 16 are named.
-// 0. zeta = peelnet_zeta(z, near, far): z is the distance along the view axis, near and far the range of z that the bounding boxes of the transparent objects in view span, clipped to the camera's. A tight range matters more than anything else you choose. Compute zeta with this function in all passes. Its range is the same for the whole frame: peelnet_zeta_in(z, peelnet_range(near, far)) is the same value, and the range may be passed in. Where boxes show that nothing lies between two depths, use peelnet_cut(zeta, gaps) for zeta in all passes: it leaves up to two such gaps out.
-// 1. Pass "range": draw all transparent surfaces, in any order. PeelnetBins bins = peelnet_bins(alpha, zeta);
-//    bins_front: rgba8unorm, cleared to 0, blending ADD, from bins.front
-//    bins_back: rgba8unorm, cleared to 0, blending ADD, from bins.back
-//    range: rg8unorm, cleared to 0, blending MAX, from bins.range
-// 2. Pass "statistics": draw all transparent surfaces, in any order. PeelnetStatistics s = peelnet_statistics(alpha, peelnet_in_pixel(zeta, bins_front, bins_back, range));
+// 0. zeta = peelnet_zeta(z, near, far): z is the distance along the view axis, near and far the range of z that the bounding boxes of the transparent objects in view span, clipped to the camera's. The tighter the range, the less errs. Compute zeta with this function in all passes. Its range is the same for the whole frame: peelnet_zeta_in(z, peelnet_range(near, far)) is the same value, and the range may be passed in. Where boxes show that nothing lies between two depths, use peelnet_cut(zeta, gaps) for zeta in all passes: it leaves up to two such gaps out. quantiles says where among the depths around the pixel most is seen: peelnet_even() where nothing is known but near and far, with several times the error.
+//    quantiles: rgba8unorm, a texture of one texel for 8 by 8 pixels, read with linear interpolation; peelnet_even() where it is not drawn.
+//    At its size, draw all transparent surfaces, in any order. float4x4 bins = peelnet_tile_bins(alpha, zeta);
+//    bins_a: rgba8unorm, cleared to 0, blending ADD, from bins[0]
+//    bins_b: rgba8unorm, cleared to 0, blending ADD, from bins[1]
+//    bins_c: rgba8unorm, cleared to 0, blending ADD, from bins[2]
+//    bins_d: rg8unorm, cleared to 0, blending ADD, from bins[3].xy
+//    bins_e: rg8unorm, cleared to 0, blending ADD, from bins[3].zw
+//    tile_nearest: r16float, cleared to -65504, blending MAX, from peelnet_tile_nearest(alpha, zeta)
+//    Then each of its texels is peelnet_quantiles(sum): sum adds, over the 3 by 3 texels around it, peelnet_tile_seen(float4x4(bins_a, bins_b, bins_c, float4(bins_d, bins_e)), tile_nearest).
+// 1. Pass "statistics": draw all transparent surfaces, in any order. PeelnetStatistics s = peelnet_statistics(alpha, zeta, quantiles);
 //    absorbances: rgba16float, cleared to 0, blending ADD, from s.absorbances
 //    nearest: rgba16float, cleared to -65504, -65504, -65504, 0, blending MAX for rgb, ADD for alpha, from s.nearest
 //    farthest: rgba16float, cleared to -65504, -65504, -65504, 0, blending MAX for rgb, ADD for alpha, from s.farthest
-// 3. Pass "weights": draw all transparent surfaces, in any order. float w = peelnet_fragment(alpha, peelnet_in_pixel(zeta, bins_front, bins_back, range), absorbances, nearest, farthest).x;
+// 2. Pass "weights": draw all transparent surfaces, in any order. float w = peelnet_fragment(alpha, zeta, quantiles, absorbances, nearest, farthest).x;
 //    sums: rgba16float, cleared to 0, blending ADD, from float4(alpha * rgb, alpha) * w
-// 4. Resolve: peelnet_resolve(sums, absorbances.x + absorbances.y + absorbances.z, background) is the colour of the pixel, and its coverage in alpha.
+// 3. Resolve: peelnet_resolve(sums, absorbances.x + absorbances.y + absorbances.z, background) is the colour of the pixel, and its coverage in alpha.
 // - alpha is opacity, rgb the linear colour that is not multiplied by it. Resolve before tone mapping and encoding.
 // - Test depth against the opaque surfaces, do not write it: a depth prepass with transparent surfaces in it hides what lies behind.
 // - z grows with distance, also where depth buffers are reversed.
@@ -80,24 +82,20 @@ struct PeelnetBetween {
     float own;
     float nearest;
 };
-struct PeelnetBins {
-    metal::float4 front;
-    metal::float4 back;
-    metal::float2 range;
-    char _pad3[8];
-};
 struct PeelnetStatistics {
     metal::float4 absorbances;
     metal::float4 nearest;
     metal::float4 farthest;
 };
 constant float PEELNET_BIN_LEVELS = 64.0;
+constant float PEELNET_TILE_DEPTHS = 240.0;
+constant float PEELNET_TILE_OPACITIES = 256.0;
 constant float PEELNET_FAINT = 0.003921569;
 constant float PEELNET_BINS = 1920.0;
 constant float PEELNET_OPACITIES = 32.0;
 constant float PEELNET_EMPTY = -65504.0;
-constant float PEELNET_FIRST_END = 0.475;
-constant float PEELNET_SECOND_END = 0.81;
+constant float PEELNET_FIRST_END = 0.4;
+constant float PEELNET_SECOND_END = 0.75;
 constant float PEELNET_THIRD_END = 1.0;
 constant float PEELNET_LAST_SLAB = 2.0;
 
@@ -190,63 +188,126 @@ metal::float4 peelnet_seen_behind(
     return metal::exp(levels_3 * -3.984375);
 }
 
-metal::float2 peelnet_range_of(
+metal::float4 peelnet_even(
+) {
+    return metal::float4(0.06, 0.35, 0.65, 0.94);
+}
+
+float peelnet_place_among(
+    float depth,
+    metal::float4 quantiles
+) {
+    metal::float4 begin_1 = metal::float4(0.0, quantiles.xyz);
+    metal::float4 parts = metal::clamp((metal::float4(depth) - begin_1) / metal::max(quantiles - begin_1, metal::float4(0.0001)), metal::float4(0.0), metal::float4(1.0));
+    float last = metal::clamp((depth - quantiles.w) / metal::max(1.0 - quantiles.w, 0.0001), 0.0, 1.0);
+    return metal::dot(parts, metal::float4(0.06, 0.29, 0.3, 0.29)) + (0.06 * last);
+}
+
+metal::float4x4 peelnet_tile_levels(
+    float level_1,
+    float depth_1
+) {
+    float place_4 = metal::clamp((depth_1 * 16.0) - 0.5, 0.0, 15.0);
+    metal::float4 _e10 = peelnet_in_bins(level_1, place_4, 0.0);
+    metal::float4 _e12 = peelnet_in_bins(level_1, place_4, 4.0);
+    metal::float4 _e14 = peelnet_in_bins(level_1, place_4, 8.0);
+    metal::float4 _e16 = peelnet_in_bins(level_1, place_4, 12.0);
+    return metal::float4x4(_e10, _e12, _e14, _e16);
+}
+
+metal::float4x4 peelnet_tile_bins(
+    float alpha_1,
     float zeta_1
 ) {
-    float level_1 = 127.5 * (zeta_1 + 1.0);
-    return metal::float2(255.0 - metal::floor(level_1), metal::ceil(level_1)) / metal::float2(255.0);
+    float _e2 = peelnet_absorbance(alpha_1);
+    float _e3 = peelnet_level(_e2);
+    metal::float4x4 _e8 = peelnet_tile_levels(_e3, (0.5 * zeta_1) + 0.5);
+    return _e8;
 }
 
-metal::float2 peelnet_ends_of(
-    metal::float2 range_1
-) {
-    metal::float2 levels_4 = metal::floor((range_1 * 255.0) + metal::float2(0.5));
-    float nearest_2 = 255.0 - levels_4.x;
-    return metal::float2(nearest_2, metal::max(levels_4.y, nearest_2 + 1.0));
-}
-
-PeelnetBins peelnet_bins(
-    float alpha_1,
+float peelnet_tile_nearest(
+    float alpha_2,
     float zeta_2
 ) {
-    float place_5 = metal::clamp((zeta_2 * 4.0) + 3.5, 0.0, 7.0);
-    float _e9 = peelnet_absorbance(alpha_1);
-    float _e10 = peelnet_level(_e9);
-    metal::float4 _e12 = peelnet_in_bins(_e10, place_5, 0.0);
-    metal::float4 _e14 = peelnet_in_bins(_e10, place_5, 4.0);
-    metal::float2 _e15 = peelnet_range_of(zeta_2);
-    return PeelnetBins {_e12, _e14, _e15};
+    float _e2 = peelnet_absorbance(alpha_2);
+    float bin_1 = metal::min(metal::floor(((0.5 * zeta_2) + 0.5) * PEELNET_TILE_DEPTHS), 239.0);
+    float opacity = metal::floor(((_e2 / (_e2 + 1.0)) * 270.9375) + 0.5);
+    metal::float3 _e26 = peelnet_halves(metal::float3(((239.0 - bin_1) * PEELNET_TILE_OPACITIES) + opacity));
+    return _e26.x;
 }
 
-float peelnet_up_to(
-    float place_1,
-    metal::float4 front,
-    metal::float4 back
+metal::float4 peelnet_before(
+    metal::float4x4 bins_1
 ) {
-    metal::float4 a = metal::abs(metal::float4(place_1) - metal::float4(0.0, 1.0, 2.0, 3.0));
-    metal::float4 b = metal::abs(metal::float4(place_1) - metal::float4(4.0, 5.0, 6.0, 7.0));
-    return metal::dot(front, a - metal::float4(a.yzw, b.x)) + metal::dot(back, b - metal::float4(b.yzw, metal::abs(place_1 - 8.0)));
+    metal::float4 all = metal::float4(1.0) * bins_1;
+    return metal::float4(0.0, all.x, all.x + all.y, (all.x + all.y) + all.z);
 }
 
-float peelnet_in_pixel(
-    float zeta_3,
-    metal::float4 front_1,
-    metal::float4 back_1,
-    metal::float2 range_2
+metal::float4 peelnet_seen(
+    metal::float4 bins_2,
+    metal::float4 taken,
+    float before_1
 ) {
-    float place_6 = (zeta_3 * 4.0) + 4.0;
-    metal::float4 _e9 = peelnet_seen_behind(0.0, front_1);
-    metal::float4 _e13 = peelnet_seen_behind(metal::dot(front_1, metal::float4(1.0)), back_1);
-    metal::float4 of_front = metal::sqrt(metal::abs(metal::float4(1.0, _e9.xyz) - _e9));
-    metal::float4 of_back = metal::sqrt(metal::abs(metal::float4(_e9.w, _e13.xyz) - _e13));
-    metal::float2 _e26 = peelnet_ends_of(range_2);
-    metal::float2 ends_1 = _e26 * 0.03137255;
-    float _e30 = peelnet_up_to(ends_1.x, of_front, of_back);
-    float _e32 = peelnet_up_to(ends_1.y, of_front, of_back);
-    float all = _e32 - _e30;
-    float _e34 = peelnet_up_to(place_6, of_front, of_back);
-    float passed_1 = (_e34 - _e30) / metal::max(all, 0.000001);
-    return (all == 0.0) ? metal::sqrt(place_6 * 0.125) : metal::clamp(passed_1, 0.0, 1.0);
+    metal::float4 _e3 = peelnet_seen_behind(before_1, bins_2);
+    metal::float4 seen_1 = metal::float4(metal::exp(before_1 * -3.984375), _e3.xyz) - _e3;
+    return (seen_1 * metal::max(bins_2 - taken, metal::float4(0.0))) / metal::max(bins_2, metal::float4(0.003921569));
+}
+
+metal::float4x4 peelnet_tile_seen(
+    metal::float4x4 bins_3,
+    float nearest
+) {
+    metal::float3 _e3 = peelnet_levels(metal::float3(nearest));
+    float level_2 = metal::max(_e3.x, 0.0);
+    float back = metal::floor(level_2 * 0.00390625);
+    float opacity_1 = (level_2 - (back * PEELNET_TILE_OPACITIES)) * 0.003921569;
+    float depth_2 = ((PEELNET_TILE_DEPTHS - back) - 0.5) / PEELNET_TILE_DEPTHS;
+    float _e24 = peelnet_level(opacity_1 / (1.0625 - opacity_1));
+    metal::float4x4 _e25 = peelnet_tile_levels(_e24, depth_2);
+    metal::float4 _e26 = peelnet_before(bins_3);
+    metal::float4 _e30 = peelnet_seen(bins_3[0], _e25[0], _e26.x);
+    metal::float4 _e34 = peelnet_seen(bins_3[1], _e25[1], _e26.y);
+    metal::float4 _e38 = peelnet_seen(bins_3[2], _e25[2], _e26.z);
+    metal::float4 _e42 = peelnet_seen(bins_3[3], _e25[3], _e26.w);
+    return metal::float4x4(_e30, _e34, _e38, _e42);
+}
+
+float peelnet_passed(
+    float share,
+    float before_2,
+    metal::float4 bins_4
+) {
+    float two_1 = bins_4.x + bins_4.y;
+    metal::float4 begin_2 = metal::float4(before_2) + metal::float4(0.0, bins_4.x, two_1, two_1 + bins_4.z);
+    return metal::dot(metal::clamp((metal::float4(share) - begin_2) / metal::max(bins_4, metal::float4(0.000000001)), metal::float4(0.0), metal::float4(1.0)), metal::float4(1.0));
+}
+
+float peelnet_depth_at(
+    float share_1,
+    metal::float4x4 bins_5,
+    metal::float4 before_3
+) {
+    float _e5 = peelnet_passed(share_1, before_3.x, bins_5[0]);
+    float _e8 = peelnet_passed(share_1, before_3.y, bins_5[1]);
+    float front = _e5 + _e8;
+    float _e12 = peelnet_passed(share_1, before_3.z, bins_5[2]);
+    float _e16 = peelnet_passed(share_1, before_3.w, bins_5[3]);
+    return 0.0625 * ((front + _e12) + _e16);
+}
+
+metal::float4 peelnet_quantiles(
+    metal::float4x4 seen
+) {
+    metal::float4 even = metal::float4(0.00125);
+    metal::float4x4 bins_6 = seen + metal::float4x4(even, even, even, even);
+    metal::float4 _e5 = peelnet_before(bins_6);
+    metal::float4 _e6 = peelnet_even();
+    metal::float4 shares_1 = _e6 * (_e5.w + metal::dot(bins_6[3], metal::float4(1.0)));
+    float _e15 = peelnet_depth_at(shares_1.x, bins_6, _e5);
+    float _e17 = peelnet_depth_at(shares_1.y, bins_6, _e5);
+    float _e19 = peelnet_depth_at(shares_1.z, bins_6, _e5);
+    float _e21 = peelnet_depth_at(shares_1.w, bins_6, _e5);
+    return metal::float4(_e15, _e17, _e19, _e21);
 }
 
 float peelnet_of_slab(
@@ -257,36 +318,38 @@ float peelnet_of_slab(
 }
 
 PeelnetPlace peelnet_place(
-    float alpha_2,
-    float t
+    float alpha_3,
+    float zeta_3,
+    metal::float4 quantiles_1
 ) {
-    float _e2 = peelnet_absorbance(alpha_2);
-    float first_2 = (t >= PEELNET_FIRST_END) ? 1.0 : 0.0;
-    float passed_2 = (first_2 + ((t >= PEELNET_SECOND_END) ? 1.0 : 0.0)) + ((t >= PEELNET_THIRD_END) ? 1.0 : 0.0);
-    float slab_2 = metal::min(passed_2, PEELNET_LAST_SLAB);
-    float _e27 = peelnet_of_slab(metal::float4(0.0, 0.475, 0.81, 1.0), slab_2);
-    float _e33 = peelnet_of_slab(metal::float4(0.475, 0.81, 1.0, 1.0), slab_2);
-    float inside = (t - _e27) / (_e33 - _e27);
-    float bin_1 = metal::min(metal::floor(inside * PEELNET_BINS), 1919.0);
-    float opacity = metal::floor(((_e2 / (_e2 + 1.0)) * 32.9375) + 0.5);
-    float near_2 = ((1919.0 - bin_1) * PEELNET_OPACITIES) + opacity;
-    return PeelnetPlace {_e2, slab_2, (2.0 * inside) - 1.0, bin_1, near_2, (bin_1 * PEELNET_OPACITIES) + opacity};
+    float _e3 = peelnet_absorbance(alpha_3);
+    float _e8 = peelnet_place_among((0.5 * zeta_3) + 0.5, quantiles_1);
+    float first_2 = (_e8 >= PEELNET_FIRST_END) ? 1.0 : 0.0;
+    float passed_1 = (first_2 + ((_e8 >= PEELNET_SECOND_END) ? 1.0 : 0.0)) + ((_e8 >= PEELNET_THIRD_END) ? 1.0 : 0.0);
+    float slab_2 = metal::min(passed_1, PEELNET_LAST_SLAB);
+    float _e33 = peelnet_of_slab(metal::float4(0.0, 0.4, 0.75, 1.0), slab_2);
+    float _e39 = peelnet_of_slab(metal::float4(0.4, 0.75, 1.0, 1.0), slab_2);
+    float inside = (_e8 - _e33) / (_e39 - _e33);
+    float bin_2 = metal::min(metal::floor(inside * PEELNET_BINS), 1919.0);
+    float opacity_2 = metal::floor(((_e3 / (_e3 + 1.0)) * 32.9375) + 0.5);
+    float near_2 = ((1919.0 - bin_2) * PEELNET_OPACITIES) + opacity_2;
+    return PeelnetPlace {_e3, slab_2, (2.0 * inside) - 1.0, bin_2, near_2, (bin_2 * PEELNET_OPACITIES) + opacity_2};
 }
 
 metal::float2 peelnet_records(
-    float alpha_3,
-    PeelnetPlace place_2
+    float alpha_4,
+    PeelnetPlace place_1
 ) {
-    metal::float3 _e6 = peelnet_halves(metal::float3(place_2.near, place_2.far, place_2.far));
-    metal::float2 levels_5 = _e6.xy;
-    return (alpha_3 < PEELNET_FAINT) ? metal::float2(-65504.0) : levels_5;
+    metal::float3 _e6 = peelnet_halves(metal::float3(place_1.near, place_1.far, place_1.far));
+    metal::float2 levels_4 = _e6.xy;
+    return (alpha_4 < PEELNET_FAINT) ? metal::float2(-65504.0) : levels_4;
 }
 
 metal::float2 peelnet_absorbances_of(
     metal::float2 levels_1
 ) {
-    metal::float2 share = (levels_1 - (metal::floor(levels_1 * 0.03125) * PEELNET_OPACITIES)) * 0.032258064;
-    return share / (metal::float2(1.0625) - share);
+    metal::float2 share_2 = (levels_1 - (metal::floor(levels_1 * 0.03125) * PEELNET_OPACITIES)) * 0.032258064;
+    return share_2 / (metal::float2(1.0625) - share_2);
 }
 
 float peelnet_middle_of(
@@ -304,7 +367,7 @@ metal::float4 peelnet_in_slab(
 }
 
 PeelnetBetween peelnet_between(
-    PeelnetPlace place_3,
+    PeelnetPlace place_2,
     float total,
     float first_1,
     metal::float2 levels_2
@@ -313,15 +376,15 @@ PeelnetBetween peelnet_between(
     bool local_1 = {};
     float begin = {};
     float end = {};
-    float b_1 = place_3.absorbance;
-    float others = metal::max(total - b_1, 0.0);
+    float b = place_2.absorbance;
+    float others = metal::max(total - b, 0.0);
     float noise = metal::max(total * 0.0009765625, 0.000001);
     float near_back = metal::floor(levels_2.x * 0.03125);
     float near_bin = 1919.0 - near_back;
     float near_level = levels_2.x + ((near_bin - near_back) * PEELNET_OPACITIES);
     metal::float2 _e23 = peelnet_absorbances_of(levels_2);
     bool all_1 = _e23.x > (others - (((0.019354839 * (1.0 + _e23.x)) * (1.0 + _e23.x)) + noise));
-    float near_3 = (near_bin > place_3.bin) ? 0.0 : (all_1 ? others : _e23.x);
+    float near_3 = (near_bin > place_2.bin) ? 0.0 : (all_1 ? others : _e23.x);
     float far_bin = metal::floor(levels_2.y * 0.03125);
     if (!((levels_2.y == near_level))) {
         local = levels_2.y < 0.0;
@@ -330,7 +393,7 @@ PeelnetBetween peelnet_between(
     }
     bool is_one = local;
     if (!(is_one)) {
-        local_1 = far_bin < place_3.bin;
+        local_1 = far_bin < place_2.bin;
     } else {
         local_1 = true;
     }
@@ -340,33 +403,33 @@ PeelnetBetween peelnet_between(
     begin = _e67;
     float _e69 = peelnet_middle_of(far_bin);
     end = is_one ? 1.0 : _e69;
-    float rest = ((total - b_1) - near_3) - far_2;
+    float rest = ((total - b) - near_3) - far_2;
     float _e79 = begin;
     float _e82 = end;
-    float moment = ((first_1 - (b_1 * place_3.inside)) - (near_3 * _e79)) - (far_2 * _e82);
+    float moment = ((first_1 - (b * place_2.inside)) - (near_3 * _e79)) - (far_2 * _e82);
     float _e85 = begin;
     float _e86 = begin;
-    begin = (_e86 > place_3.inside) ? -1.0 : _e85;
+    begin = (_e86 > place_2.inside) ? -1.0 : _e85;
     float _e91 = end;
     float _e92 = end;
-    end = (_e92 < place_3.inside) ? 1.0 : _e91;
-    float in_front = (near_3 * ((near_bin == place_3.bin) ? 0.5 : 1.0)) + (far_2 * ((far_bin == place_3.bin) ? 0.5 : 0.0));
+    end = (_e92 < place_2.inside) ? 1.0 : _e91;
+    float in_front = (near_3 * ((near_bin == place_2.bin) ? 0.5 : 1.0)) + (far_2 * ((far_bin == place_2.bin) ? 0.5 : 0.0));
     float _e110 = end;
     float _e111 = begin;
     float extent_1 = metal::max(_e110 - _e111, 0.0010416667);
     float per_extent = 1.0 / extent_1;
     float _e118 = begin;
-    float x = metal::clamp((place_3.inside - _e118) * per_extent, 0.0, 1.0);
+    float x = metal::clamp((place_2.inside - _e118) * per_extent, 0.0, 1.0);
     float _e126 = begin;
     float _e127 = end;
-    float depth = metal::clamp(moment / metal::max(rest, noise), _e126, _e127);
+    float depth_3 = metal::clamp(moment / metal::max(rest, noise), _e126, _e127);
     float _e129 = begin;
-    float mean = metal::clamp((depth - _e129) * per_extent, 0.0, 1.0);
-    bool before_1 = x < mean;
-    float bound = (before_1 ? (1.0 - mean) : (x - mean)) / metal::max(before_1 ? (1.0 - x) : x, 0.000001);
-    float low = before_1 ? 0.0 : bound;
-    float high = before_1 ? bound : 1.0;
-    return PeelnetBetween {metal::max(rest, 0.0), x, mean, low, high, 0.5 * extent_1, b_1, in_front};
+    float mean = metal::clamp((depth_3 - _e129) * per_extent, 0.0, 1.0);
+    bool before_4 = x < mean;
+    float bound = (before_4 ? (1.0 - mean) : (x - mean)) / metal::max(before_4 ? (1.0 - x) : x, 0.000001);
+    float low = before_4 ? 0.0 : bound;
+    float high = before_4 ? bound : 1.0;
+    return PeelnetBetween {metal::max(rest, 0.0), x, mean, low, high, 0.5 * extent_1, b, in_front};
 }
 
 bool peelnet_is_kept(
@@ -398,11 +461,11 @@ float peelnet_share(
     metal::float4 input_a = metal::float4(root_absorbance, place_fraction, mean_fraction, share_low);
     metal::float4 input_b = metal::float4(share_high, root_own, half_extent, of_own);
     metal::float4 input_c = metal::float4(of_nearest, 0.0, 0.0, 0.0);
-    metal::float4 layer_a_a = metal::max(((metal::float4(-1.4641386, -3.3562605, 8.56328, 7.9295816) + (metal::float4x4(metal::float4(-0.062875085, -0.044414904, -0.045489606, -0.07379496), metal::float4(1.703964, 1.899293, -1.2000672, -2.6386976), metal::float4(1.8144727, -1.7142202, -0.8144927, -0.71155626), metal::float4(0.47746012, 0.9861568, 0.8539375, 2.5413916)) * input_a)) + (metal::float4x4(metal::float4(1.5533057, 1.7421483, 0.85063446, -1.2913522), metal::float4(0.5555127, 0.8219148, -0.012739913, -1.4782242), metal::float4(-0.5184329, 4.586603, 2.1503766, -2.4249082), metal::float4(1.1940901, -3.0581594, -1.1037587, -1.0768601)) * input_b)) + (metal::float4(-1.8912773, 0.5968488, -8.25149, -0.740267) * input_c.x), metal::float4(0.0));
-    metal::float4 layer_a_b = metal::max(((metal::float4(-3.435276, -3.0695794, 3.38485, -9.666815) + (metal::float4x4(metal::float4(0.1240001, 0.050277658, -0.054266352, 0.15960346), metal::float4(-1.4091853, 1.1852088, 2.4092836, 4.852766), metal::float4(-1.7622716, -1.6526178, -3.9796207, 4.484973), metal::float4(2.2075722, 3.8548405, 0.8623253, 3.6745415)) * input_a)) + (metal::float4x4(metal::float4(2.202639, 5.9497824, -0.058958687, 2.6287017), metal::float4(1.348361, -0.5333857, -1.5144511, -0.18664494), metal::float4(1.7184564, -0.055434026, -0.22081658, -0.3716273), metal::float4(-0.40209323, -3.8325782, 1.8777025, 0.19611548)) * input_b)) + (metal::float4(1.7847227, 0.8313226, -2.1540985, -1.1985334) * input_c.x), metal::float4(0.0));
-    metal::float4 layer_a_c = metal::max(((metal::float4(1.0071908, 3.4967759, 5.591461, 4.5318055) + (metal::float4x4(metal::float4(-0.26753965, 0.06484478, -0.018652525, 0.08553129), metal::float4(1.6324673, -2.843409, -0.45813456, -0.0043214555), metal::float4(-3.7041008, -1.7365564, 2.6887474, -0.5723574), metal::float4(-3.1260092, -1.8425844, -6.1553755, -7.8002076)) * input_a)) + (metal::float4x4(metal::float4(1.7835314, -1.1375017, -2.9750838, -1.3568959), metal::float4(1.0672754, 0.076174654, 0.44796503, -0.3170386), metal::float4(-0.4925571, -1.0347719, -2.3352869, 0.3858673), metal::float4(-0.33531374, 0.28107768, -1.2299383, -4.0824766)) * input_b)) + (metal::float4(1.068785, -0.8180279, -1.8280076, -0.27818996) * input_c.x), metal::float4(0.0));
-    metal::float4 layer_a_d = metal::max(((metal::float4(12.364563, 0.0, 0.0, 0.0) + (metal::float4x4(metal::float4(0.010403197, 0.0, 0.0, 0.0), metal::float4(0.14919655, 0.0, 0.0, 0.0), metal::float4(-0.22271577, 0.0, 0.0, 0.0), metal::float4(-5.0166383, 0.0, 0.0, 0.0)) * input_a)) + (metal::float4x4(metal::float4(-1.8775809, 0.0, 0.0, 0.0), metal::float4(0.008815818, 0.0, 0.0, 0.0), metal::float4(-1.6784344, 0.0, 0.0, 0.0), metal::float4(-0.2517419, 0.0, 0.0, 0.0)) * input_b)) + (metal::float4(-9.882709, 0.0, 0.0, 0.0) * input_c.x), metal::float4(0.0));
-    float layer_b_a = 1.0 / (1.0 + metal::exp(metal::min(-(((((-0.037035838 + metal::dot(metal::float4(-0.68024015, 0.36019412, -0.42563558, -0.44534072), layer_a_a)) + metal::dot(metal::float4(-0.47680685, 1.0096582, 0.43886814, 1.5624919), layer_a_b)) + metal::dot(metal::float4(0.45026985, -0.9147628, -0.380483, -1.3764257), layer_a_c)) + (0.6037574 * layer_a_d.x))), 80.0)));
+    metal::float4 layer_a_a = metal::max(((metal::float4(-4.498447, -2.6701427, 4.999467, 1.4303162) + (metal::float4x4(metal::float4(-0.024165843, -0.06619174, -0.0894137, -0.015284829), metal::float4(1.3265, -3.2874584, -0.70561916, -3.0515947), metal::float4(3.778825, -1.531765, -0.3332211, -1.004306), metal::float4(0.7971547, -2.0386164, -3.046227, 0.63726395)) * input_a)) + (metal::float4x4(metal::float4(1.1255262, 0.534405, 0.522491, -1.3565203), metal::float4(-0.29071623, 1.0490328, 0.27835515, -0.09670393), metal::float4(-1.296448, 0.10561774, -0.3884336, 0.17241535), metal::float4(2.2995408, -0.11920848, -3.8340485, -0.99373376)) * input_b)) + (metal::float4(0.4358252, 5.9206295, 0.3670889, 1.3436236) * input_c.x), metal::float4(0.0));
+    metal::float4 layer_a_b = metal::max(((metal::float4(2.0653932, -6.0528083, 1.7083477, -6.4319215) + (metal::float4x4(metal::float4(0.12285325, 0.17474158, -0.25738603, 0.14999948), metal::float4(-1.0358131, 0.490535, 2.8561318, 5.422858), metal::float4(0.86023754, -0.75434154, -1.9808092, 1.2833903), metal::float4(-5.014721, 0.27430826, -0.82875806, 3.4427586)) * input_a)) + (metal::float4x4(metal::float4(0.13684608, 8.342782, -0.29210803, 1.1220578), metal::float4(0.22268996, -0.090435036, -1.1434097, -0.5254657), metal::float4(-0.58302504, -0.03554181, 0.18118803, 0.92999), metal::float4(-6.372985, -3.9979587, 1.0330142, -3.0146995)) * input_b)) + (metal::float4(4.15186, 0.4215023, -0.3557483, 1.7296917) * input_c.x), metal::float4(0.0));
+    metal::float4 layer_a_c = metal::max(((metal::float4(-0.6208276, 7.4677916, -6.0561085, -2.0600226) + (metal::float4x4(metal::float4(-0.093884, 0.14485556, 0.07945557, -0.052132234), metal::float4(-1.1132472, -1.6288756, 0.5282378, 0.01669853), metal::float4(-0.2509708, -0.52644914, -5.2703047, 0.5375703), metal::float4(-3.1858332, -5.1489344, -7.4003, -3.880237)) * input_a)) + (metal::float4x4(metal::float4(-1.5277979, -3.379662, 0.69836324, -3.4884565), metal::float4(0.7421186, 0.20718975, 0.980553, 0.18979654), metal::float4(-0.3197097, 0.06039786, 1.1576452, -1.2233107), metal::float4(0.0688191, -4.0587616, 4.942371, 8.055541)) * input_b)) + (metal::float4(3.8033671, -0.78402203, 3.2816844, -1.1312629) * input_c.x), metal::float4(0.0));
+    metal::float4 layer_a_d = metal::max(((metal::float4(-1.7573652, 0.0, 0.0, 0.0) + (metal::float4x4(metal::float4(0.04958175, 0.0, 0.0, 0.0), metal::float4(2.5011623, 0.0, 0.0, 0.0), metal::float4(3.0395753, 0.0, 0.0, 0.0), metal::float4(1.0385911, 0.0, 0.0, 0.0)) * input_a)) + (metal::float4x4(metal::float4(1.2886333, 0.0, 0.0, 0.0), metal::float4(-0.45324615, 0.0, 0.0, 0.0), metal::float4(-3.8363018, 0.0, 0.0, 0.0), metal::float4(1.4736507, 0.0, 0.0, 0.0)) * input_b)) + (metal::float4(-1.2805456, 0.0, 0.0, 0.0) * input_c.x), metal::float4(0.0));
+    float layer_b_a = 1.0 / (1.0 + metal::exp(metal::min(-(((((-0.1205529 + metal::dot(metal::float4(-0.6124052, 0.3442704, -0.21568339, -2.6409829), layer_a_a)) + metal::dot(metal::float4(-0.39073837, 1.9212452, 0.36033517, 0.77580184), layer_a_b)) + metal::dot(metal::float4(0.21842586, -0.47065383, -0.5154158, -0.4392843), layer_a_c)) + (0.46073163 * layer_a_d.x))), 80.0)));
     return layer_b_a;
 }
 
@@ -414,11 +477,11 @@ float peelnet_network(
 }
 
 metal::float2 peelnet_weigh(
-    PeelnetPlace place_4,
+    PeelnetPlace place_3,
     bool counts,
     metal::float4 absorbances,
     metal::float4 firsts,
-    metal::float4 nearest,
+    metal::float4 nearest_1,
     metal::float4 farthest,
     float ends
 ) {
@@ -428,31 +491,31 @@ metal::float2 peelnet_weigh(
     bool local_6 = {};
     bool local_7 = {};
     metal::float4 sums_2 = metal::min(absorbances, metal::float4(65504.0));
-    float _e11 = peelnet_of_slab(sums_2, place_4.slab);
-    float _e13 = peelnet_of_slab(firsts, place_4.slab);
+    float _e11 = peelnet_of_slab(sums_2, place_3.slab);
+    float _e13 = peelnet_of_slab(firsts, place_3.slab);
     float first_3 = metal::clamp(_e13, -65504.0, 65504.0);
-    float _e18 = peelnet_of_slab(nearest, place_4.slab);
-    float _e20 = peelnet_of_slab(farthest, place_4.slab);
+    float _e18 = peelnet_of_slab(nearest_1, place_3.slab);
+    float _e20 = peelnet_of_slab(farthest, place_3.slab);
     metal::float2 halves_1 = metal::float2(_e18, _e20);
     metal::float3 _e24 = peelnet_levels(metal::float3(halves_1, halves_1.y));
     metal::float2 decoded = _e24.xy;
-    metal::float2 levels_6 = (place_4.slab < ends) ? decoded : metal::float2(decoded.x, -1.0);
-    float before_2 = (((place_4.slab > 0.0) ? sums_2.x : 0.0) + ((place_4.slab > 1.0) ? sums_2.y : 0.0)) + ((place_4.slab > 2.0) ? sums_2.z : 0.0);
+    metal::float2 levels_5 = (place_3.slab < ends) ? decoded : metal::float2(decoded.x, -1.0);
+    float before_5 = (((place_3.slab > 0.0) ? sums_2.x : 0.0) + ((place_3.slab > 1.0) ? sums_2.y : 0.0)) + ((place_3.slab > 2.0) ? sums_2.z : 0.0);
     if (counts) {
-        bool _e56 = peelnet_is_kept(place_4.near, levels_6.x);
+        bool _e56 = peelnet_is_kept(place_3.near, levels_5.x);
         local_3 = _e56;
     } else {
         local_3 = false;
     }
     bool is_near = local_3;
     if (counts) {
-        local_4 = levels_6.y >= 0.0;
+        local_4 = levels_5.y >= 0.0;
     } else {
         local_4 = false;
     }
     bool _e65 = local_4;
     if (_e65) {
-        bool _e70 = peelnet_is_kept(place_4.far, levels_6.y);
+        bool _e70 = peelnet_is_kept(place_3.far, levels_5.y);
         local_5 = _e70;
     } else {
         local_5 = false;
@@ -470,38 +533,40 @@ metal::float2 peelnet_weigh(
         local_7 = true;
     }
     bool known = local_7;
-    PeelnetBetween _e83 = peelnet_between(place_4, _e11, first_3, levels_6);
+    PeelnetBetween _e83 = peelnet_between(place_3, _e11, first_3, levels_5);
     float _e88 = peelnet_network(_e83);
-    float share_1 = _e83.low + ((_e83.high - _e83.low) * _e88);
-    float at_end = is_far ? metal::max(_e11 - place_4.absorbance, 0.0) : 0.0;
-    float inside_1 = known ? at_end : (_e83.nearest + (_e83.absorbance * share_1));
-    return metal::float2(metal::exp(-((before_2 + inside_1))), known ? 1.0 : 0.0);
+    float share_3 = _e83.low + ((_e83.high - _e83.low) * _e88);
+    float at_end = is_far ? metal::max(_e11 - place_3.absorbance, 0.0) : 0.0;
+    float inside_1 = known ? at_end : (_e83.nearest + (_e83.absorbance * share_3));
+    return metal::float2(metal::exp(-((before_5 + inside_1))), known ? 1.0 : 0.0);
 }
 
 PeelnetStatistics peelnet_statistics(
-    float alpha_4,
-    float t_1
+    float alpha_5,
+    float zeta_4,
+    metal::float4 quantiles_2
 ) {
-    PeelnetPlace _e2 = peelnet_place(alpha_4, t_1);
-    metal::float2 _e3 = peelnet_records(alpha_4, _e2);
-    metal::float4 _e7 = peelnet_in_slab(_e2.absorbance, _e2.slab, 0.0);
-    metal::float4 _e11 = peelnet_in_slab(_e3.x, _e2.slab, PEELNET_EMPTY);
-    metal::float4 _e17 = peelnet_in_slab(_e2.absorbance * _e2.inside, _e2.slab, 0.0);
-    metal::float4 _e21 = peelnet_in_slab(_e3.y, _e2.slab, PEELNET_EMPTY);
-    return PeelnetStatistics {metal::float4(_e7.xyz, _e17.x), metal::float4(_e11.xyz, _e17.y), metal::float4(_e21.xyz, _e17.z)};
+    PeelnetPlace _e3 = peelnet_place(alpha_5, zeta_4, quantiles_2);
+    metal::float2 _e4 = peelnet_records(alpha_5, _e3);
+    metal::float4 _e8 = peelnet_in_slab(_e3.absorbance, _e3.slab, 0.0);
+    metal::float4 _e12 = peelnet_in_slab(_e4.x, _e3.slab, PEELNET_EMPTY);
+    metal::float4 _e18 = peelnet_in_slab(_e3.absorbance * _e3.inside, _e3.slab, 0.0);
+    metal::float4 _e22 = peelnet_in_slab(_e4.y, _e3.slab, PEELNET_EMPTY);
+    return PeelnetStatistics {metal::float4(_e8.xyz, _e18.x), metal::float4(_e12.xyz, _e18.y), metal::float4(_e22.xyz, _e18.z)};
 }
 
 metal::float2 peelnet_fragment(
-    float alpha_5,
-    float t_2,
+    float alpha_6,
+    float zeta_5,
+    metal::float4 quantiles_3,
     metal::float4 absorbances_1,
-    metal::float4 nearest_1,
+    metal::float4 nearest_2,
     metal::float4 farthest_1
 ) {
-    PeelnetPlace _e5 = peelnet_place(alpha_5, t_2);
-    metal::float4 firsts_1 = metal::float4(absorbances_1.w, nearest_1.w, farthest_1.w, 0.0);
-    metal::float2 _e14 = peelnet_weigh(_e5, alpha_5 >= PEELNET_FAINT, absorbances_1, firsts_1, nearest_1, farthest_1, 3.0);
-    return _e14;
+    PeelnetPlace _e6 = peelnet_place(alpha_6, zeta_5, quantiles_3);
+    metal::float4 firsts_1 = metal::float4(absorbances_1.w, nearest_2.w, farthest_1.w, 0.0);
+    metal::float2 _e15 = peelnet_weigh(_e6, alpha_6 >= PEELNET_FAINT, absorbances_1, firsts_1, nearest_2, farthest_1, 3.0);
+    return _e15;
 }
 
 metal::float4 peelnet_composite(
@@ -543,7 +608,7 @@ float peelnet_weight(
     float of_nearest_1
 ) {
     float root = metal::clamp(root_absorbance_1, 0.0, 256.0);
-    float _e39 = peelnet_share(metal::clamp(root_absorbance_1, -46549.746, 46561.754), metal::clamp(place_fraction_1, -3128.1426, 3129.5498), metal::clamp(mean_fraction_1, -2148.7454, 2150.152), metal::clamp(share_low_1, -1742.304, 1742.5583), metal::clamp(share_high_1, -2759.7317, 2761.3855), metal::clamp(root_own_1, -5650.0513, 5651.64), metal::clamp(half_extent_1, -2216.933, 2218.4595), metal::clamp(of_own_1, -1664.0962, 1665.9397), metal::clamp(of_nearest_1, -1659.8347, 1661.6699));
+    float _e39 = peelnet_share(metal::clamp(root_absorbance_1, -46986.324, 46999.176), metal::clamp(place_fraction_1, -2679.9502, 2681.3418), metal::clamp(mean_fraction_1, -1903.5188, 1904.905), metal::clamp(share_low_1, -1680.4283, 1680.6422), metal::clamp(share_high_1, -2318.284, 2319.986), metal::clamp(root_own_1, -5800.3765, 5802.031), metal::clamp(half_extent_1, -2581.1086, 2582.5159), metal::clamp(of_own_1, -1597.1188, 1598.9757), metal::clamp(of_nearest_1, -1612.0026, 1613.8546));
     metal::float2 bounds = metal::clamp(metal::float2(share_low_1, share_high_1), metal::float2(0.0), metal::float2(1.0));
     return metal::exp((-(root) * root) * metal::mix(bounds.x, bounds.y, _e39));
 }

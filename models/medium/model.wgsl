@@ -3,49 +3,51 @@
 // WGSL, plain WebGPU. Compiled by naga, and run on a GPU against the network at every export.
 // Network: 9-13-1 (Relu hidden, Sigmoid last), 144 parameters, 130 multiply-adds. Recipe medium, seed 1, 80 epochs.
 // Answers: transmittance of what lies between a slab's known ends, exp(-absorbance * share) with absorbance = root_absorbance^2 and share in share_low .. share_high.
-// Input 0: root_absorbance (root of the absorbance between the slab's ends), 0.0 .. 21.25096 in training.
+// Input 0: root_absorbance (root of the absorbance between the slab's ends), 0.0 .. 21.359003 in training.
 // Input 1: place_fraction (of the way between the slab's ends), 0.0 .. 1.0 in training.
 // Input 2: mean_fraction (of the way between the slab's ends), 0.0 .. 1.0 in training.
 // Input 3: share_low (of the absorbance between the slab's ends), 0.0 .. 1.0 in training.
 // Input 4: share_high (of the absorbance between the slab's ends), 0.0 .. 1.0 in training.
 // Input 5: root_own (root of the fragment's absorbance), 0.031630483 .. 2.4013393 in training.
 // Input 6: half_extent (half of the way between the slab's ends, in slabs), 0.00052083336 .. 1.0 in training.
-// Input 7: of_own (absorbance between the ends, of that and the fragment's), 0.0 .. 0.9999915 in training.
+// Input 7: of_own (absorbance between the ends, of that and the fragment's), 0.0 .. 0.9999906 in training.
 // Input 8: of_nearest (absorbance between the ends, of that and the nearer end's), 0.0 .. 1.0 in training.
 // Trained on 21565798 rows of boxes, cups, foliage, intersecting, opaque-mix, panes, sixteen-025, sixteen-050, sixteen-075, sixteen-085, sixteen-random-alpha, sixteen-random-color, smoke-100, smoke-30, synthetic (dataset f0e6c4a7cca08d560f99a5be9cbd1514bf8be352632a347602bf08363695fd29+e22e844788a454658277e87e23685b5ffa00e3ad2d48cb833cc53130eaf4d8b7).
-// Loss: training 0.000147, validation 0.000138, test 0.000150.
-// Held-out error, mean |T - T_exact|: boxes-held 0.00280, cups-held 0.00251, foliage-held 0.00075, panes-held 0.00025, sixteen-held 0.00059, smoke-held 0.00570.
+// Loss: training 0.000156, validation 0.000150, test 0.000147.
+// Held-out error, mean |T - T_exact|: boxes-held 0.00280, cups-held 0.00284, foliage-held 0.00148, panes-held 0.00086, sixteen-held 0.00092, smoke-held 0.00365.
 //
 // Self-tests, to some roundings of 32 bits; weights and colours also to those of 16-bit targets.
-// peelnet_weight(0.48334956, 0.67085797, 0.16887921, 0.7373583, 0.19208878, 0.1129206, 0.12900263, 0.43583557, 0.7663156) = 0.8680153
-// peelnet_weight(0.2974678, 0.13589168, 0.26682287, 0.7078695, 0.5534122, 0.8413221, 0.6951227, 0.37161863, 0.9624051) = 0.9411046
-// peelnet_weight(2.7055542, 0.2162394, 0.7240006, 0.37958002, 0.26558614, 1.9607327, 0.5804378, 0.9097903, 0.04841405) = 0.066045314
+// peelnet_weight(0.485807, 0.67085797, 0.16887921, 0.7373583, 0.19208878, 0.1129206, 0.12900263, 0.43583518, 0.7663156) = 0.92490417
+// peelnet_weight(0.29898018, 0.13589168, 0.26682287, 0.7078695, 0.5534122, 0.8413221, 0.6951227, 0.3716183, 0.9624051) = 0.9390335
+// peelnet_weight(2.7193098, 0.2162394, 0.7240006, 0.37958002, 0.26558614, 1.9607327, 0.5804378, 0.90978944, 0.04841405) = 0.06794879
 // Four fragments of a pixel, near 1.0, far 8.0, background 0.25, 0.5, 0.75:
 //    z 1.0, alpha 0.5, rgb 1.0, 0.0, 0.0: zeta -1.0, weight 1.0
 //    z 2.0, alpha 0.5, rgb 0.0, 1.0, 0.0: zeta -0.33333334, weight 0.5
 //    z 4.0, alpha 0.5, rgb 0.0, 0.0, 1.0: zeta 0.33333334, weight 0.25
 //    z 8.0, alpha 0.9, rgb 1.0, 1.0, 1.0: zeta 1.0, weight 0.125
-//    target bins_front: 0.17254902, 0.0, 0.14509805, 0.02745098
-//    target bins_back: 0.02745098, 0.14509805, 0.0, 0.5764706
-//    target range: 1.0, 1.0
-//    target absorbances: 1.3862944, 0.6931472, 2.302585, -0.011217061
-//    target nearest: 64928.0, -25.28125, -64768.0, 0.42932084
-//    target farthest: 49568.0, 25.203125, 65248.0, 2.302585
+//    target absorbances: 1.3862944, 0.6931472, 2.302585, -0.23104906
+//    target nearest: 64928.0, -3.4101562, -64768.0, 0.3630771
+//    target farthest: 64.8125, 3.4003906, 65248.0, 2.302585
 //    colour of the pixel: 0.615625, 0.36875, 0.246875
 //
 // How to draw with it. Targets may have 32 bits a channel wherever 16 are named.
-// 0. zeta = peelnet_zeta(z, near, far): z is the distance along the view axis, near and far the range of z that the bounding boxes of the transparent objects in view span, clipped to the camera's. A tight range matters more than anything else you choose. Compute zeta with this function in all passes. Its range is the same for the whole frame: peelnet_zeta_in(z, peelnet_range(near, far)) is the same value, and the range may be passed in. Where boxes show that nothing lies between two depths, use peelnet_cut(zeta, gaps) for zeta in all passes: it leaves up to two such gaps out.
-// 1. Pass "range": draw all transparent surfaces, in any order. let bins = peelnet_bins(alpha, zeta);
-//    bins_front: rgba8unorm, cleared to 0, blending ADD, from bins.front
-//    bins_back: rgba8unorm, cleared to 0, blending ADD, from bins.back
-//    range: rg8unorm, cleared to 0, blending MAX, from bins.range
-// 2. Pass "statistics": draw all transparent surfaces, in any order. let s = peelnet_statistics(alpha, peelnet_in_pixel(zeta, bins_front, bins_back, range));
+// 0. zeta = peelnet_zeta(z, near, far): z is the distance along the view axis, near and far the range of z that the bounding boxes of the transparent objects in view span, clipped to the camera's. The tighter the range, the less errs. Compute zeta with this function in all passes. Its range is the same for the whole frame: peelnet_zeta_in(z, peelnet_range(near, far)) is the same value, and the range may be passed in. Where boxes show that nothing lies between two depths, use peelnet_cut(zeta, gaps) for zeta in all passes: it leaves up to two such gaps out. quantiles says where among the depths around the pixel most is seen: peelnet_even() where nothing is known but near and far, with several times the error.
+//    quantiles: rgba8unorm, a texture of one texel for 8 by 8 pixels, read with linear interpolation; peelnet_even() where it is not drawn.
+//    At its size, draw all transparent surfaces, in any order. let bins = peelnet_tile_bins(alpha, zeta);
+//    bins_a: rgba8unorm, cleared to 0, blending ADD, from bins[0]
+//    bins_b: rgba8unorm, cleared to 0, blending ADD, from bins[1]
+//    bins_c: rgba8unorm, cleared to 0, blending ADD, from bins[2]
+//    bins_d: rg8unorm, cleared to 0, blending ADD, from bins[3].xy
+//    bins_e: rg8unorm, cleared to 0, blending ADD, from bins[3].zw
+//    tile_nearest: r16float, cleared to -65504, blending MAX, from peelnet_tile_nearest(alpha, zeta)
+//    Then each of its texels is peelnet_quantiles(sum): sum adds, over the 3 by 3 texels around it, peelnet_tile_seen(mat4x4f(bins_a, bins_b, bins_c, vec4f(bins_d, bins_e)), tile_nearest).
+// 1. Pass "statistics": draw all transparent surfaces, in any order. let s = peelnet_statistics(alpha, zeta, quantiles);
 //    absorbances: rgba16float, cleared to 0, blending ADD, from s.absorbances
 //    nearest: rgba16float, cleared to -65504, -65504, -65504, 0, blending MAX for rgb, ADD for alpha, from s.nearest
 //    farthest: rgba16float, cleared to -65504, -65504, -65504, 0, blending MAX for rgb, ADD for alpha, from s.farthest
-// 3. Pass "weights": draw all transparent surfaces, in any order. let w = peelnet_fragment(alpha, peelnet_in_pixel(zeta, bins_front, bins_back, range), absorbances, nearest, farthest).x;
+// 2. Pass "weights": draw all transparent surfaces, in any order. let w = peelnet_fragment(alpha, zeta, quantiles, absorbances, nearest, farthest).x;
 //    sums: rgba16float, cleared to 0, blending ADD, from vec4f(alpha * rgb, alpha) * w
-// 4. Resolve: peelnet_resolve(sums, absorbances.x + absorbances.y + absorbances.z, background) is the colour of the pixel, and its coverage in alpha.
+// 3. Resolve: peelnet_resolve(sums, absorbances.x + absorbances.y + absorbances.z, background) is the colour of the pixel, and its coverage in alpha.
 // - alpha is opacity, rgb the linear colour that is not multiplied by it. Resolve before tone mapping and encoding.
 // - Test depth against the opaque surfaces, do not write it: a depth prepass with transparent surfaces in it hides what lies behind.
 // - z grows with distance, also where depth buffers are reversed.
@@ -133,6 +135,104 @@ fn peelnet_seen_behind(before: f32, bins: vec4f) -> vec4f {
     return exp(levels * (-255.0 / PEELNET_BIN_LEVELS));
 }
 
+// Bins of depth, and levels of opacity in each, of the nearest fragment of a tile's pixel.
+const PEELNET_TILE_DEPTHS: f32 = 240.0;
+const PEELNET_TILE_OPACITIES: f32 = 256.0;
+
+// The quantiles of a frame of which only near and far are known.
+fn peelnet_even() -> vec4f {
+    return vec4f(0.06, 0.35, 0.65, 0.94);
+}
+
+// Where a depth, 0 .. 1 of the frame's, lies among quantiles, 0 .. 1.
+fn peelnet_place_among(depth: f32, quantiles: vec4f) -> f32 {
+    let begin = vec4f(0.0, quantiles.xyz);
+    let parts = clamp((vec4f(depth) - begin) / max(quantiles - begin, vec4f(1e-4)), vec4f(0.0), vec4f(1.0));
+    let last = clamp((depth - quantiles.w) / max(1.0 - quantiles.w, 1e-4), 0.0, 1.0);
+    return dot(parts, vec4f(0.06, 0.29, 0.3, 0.29)) + 0.06 * last;
+}
+
+// What a level adds to sixteen bins of depth: four in a column, nearest first.
+fn peelnet_tile_levels(level: f32, depth: f32) -> mat4x4f {
+    let place = clamp(depth * 16.0 - 0.5, 0.0, 15.0);
+    return mat4x4f(
+        peelnet_in_bins(level, place, 0.0),
+        peelnet_in_bins(level, place, 4.0),
+        peelnet_in_bins(level, place, 8.0),
+        peelnet_in_bins(level, place, 12.0),
+    );
+}
+
+// What a fragment adds to the bins of its tile, of 8 bits.
+fn peelnet_tile_bins(alpha: f32, zeta: f32) -> mat4x4f {
+    return peelnet_tile_levels(peelnet_level(peelnet_absorbance(alpha)), 0.5 * zeta + 0.5);
+}
+
+// What a fragment writes as the nearest of its tile's pixel, where the most is kept.
+fn peelnet_tile_nearest(alpha: f32, zeta: f32) -> f32 {
+    let b = peelnet_absorbance(alpha);
+    let bin = min(floor((0.5 * zeta + 0.5) * PEELNET_TILE_DEPTHS), PEELNET_TILE_DEPTHS - 1.0);
+    let opacity = floor(b / (b + 1.0) * (1.0625 * (PEELNET_TILE_OPACITIES - 1.0)) + 0.5);
+    return peelnet_halves(vec3f((PEELNET_TILE_DEPTHS - 1.0 - bin) * PEELNET_TILE_OPACITIES + opacity)).x;
+}
+
+// What the columns of bins before each hold together.
+fn peelnet_before(bins: mat4x4f) -> vec4f {
+    let all = vec4f(1.0) * bins;
+    return vec4f(0.0, all.x, all.x + all.y, all.x + all.y + all.z);
+}
+
+// Of four bins what is seen behind the nearest fragment. before: what all bins before them hold.
+fn peelnet_seen(bins: vec4f, taken: vec4f, before: f32) -> vec4f {
+    let through = peelnet_seen_behind(before, bins);
+    let seen = vec4f(exp(before * (-255.0 / PEELNET_BIN_LEVELS)), through.xyz) - through;
+    return seen * max(bins - taken, vec4f(0.0)) / max(bins, vec4f(1.0 / 255.0));
+}
+
+// What is seen in a tile's pixel behind its nearest fragment. bins, nearest: as the targets hold them.
+fn peelnet_tile_seen(bins: mat4x4f, nearest: f32) -> mat4x4f {
+    let level = max(peelnet_levels(vec3f(nearest)).x, 0.0);
+    let back = floor(level * (1.0 / PEELNET_TILE_OPACITIES));
+    let opacity = (level - back * PEELNET_TILE_OPACITIES) * (1.0 / (PEELNET_TILE_OPACITIES - 1.0));
+    let depth = (PEELNET_TILE_DEPTHS - back - 0.5) / PEELNET_TILE_DEPTHS;
+    let taken = peelnet_tile_levels(peelnet_level(opacity / (1.0625 - opacity)), depth);
+    let before = peelnet_before(bins);
+    return mat4x4f(
+        peelnet_seen(bins[0], taken[0], before.x),
+        peelnet_seen(bins[1], taken[1], before.y),
+        peelnet_seen(bins[2], taken[2], before.z),
+        peelnet_seen(bins[3], taken[3], before.w),
+    );
+}
+
+// How many of four bins lie before a share. before: what the bins before them hold.
+fn peelnet_passed(share: f32, before: f32, bins: vec4f) -> f32 {
+    let two = bins.x + bins.y;
+    let begin = vec4f(before) + vec4f(0.0, bins.x, two, two + bins.z);
+    return dot(clamp((vec4f(share) - begin) / max(bins, vec4f(1e-9)), vec4f(0.0), vec4f(1.0)), vec4f(1.0));
+}
+
+// The depth before which a share of sixteen bins lies. before: as of peelnet_before.
+fn peelnet_depth_at(share: f32, bins: mat4x4f, before: vec4f) -> f32 {
+    let front = peelnet_passed(share, before.x, bins[0]) + peelnet_passed(share, before.y, bins[1]);
+    return 0.0625 * (front + peelnet_passed(share, before.z, bins[2]) + peelnet_passed(share, before.w, bins[3]));
+}
+
+// The quantiles of what is seen in nine pixels together.
+fn peelnet_quantiles(seen: mat4x4f) -> vec4f {
+    // Evenly spread where nothing is known.
+    let even = vec4f(0.00125);
+    let bins = seen + mat4x4f(even, even, even, even);
+    let before = peelnet_before(bins);
+    let shares = peelnet_even() * (before.w + dot(bins[3], vec4f(1.0)));
+    return vec4f(
+        peelnet_depth_at(shares.x, bins, before),
+        peelnet_depth_at(shares.y, bins, before),
+        peelnet_depth_at(shares.z, bins, before),
+        peelnet_depth_at(shares.w, bins, before),
+    );
+}
+
 // Fragments of less opacity are composited, but are never a slab's nearest or farthest.
 const PEELNET_FAINT: f32 = 0.003921569;
 // Bins of depth in a slab, and levels of opacity in each, that its nearest and its farthest fragment are kept with.
@@ -173,64 +273,9 @@ struct PeelnetBetween {
     nearest: f32,
 }
 
-// What is known of a pixel's depths, in 8 bits.
-struct PeelnetBins {
-    // Absorbances of eight bins of the frame's depth, nearest first.
-    front: vec4f,
-    back: vec4f,
-    // The level of the nearest depth, counted from the far end, and of the farthest.
-    range: vec2f,
-}
-
-// The two ends of a pixel that a depth alone would have: its level counted from the far end, rounded down from the near one, and its level,
-// rounded up. Of each the most is kept.
-fn peelnet_range_of(zeta: f32) -> vec2f {
-    let level = 127.5 * (zeta + 1.0);
-    return vec2f(255.0 - floor(level), ceil(level)) / 255.0;
-}
-
-// The levels, 0 .. 255, of the nearest and of the farthest depth of a pixel, at least one apart.
-fn peelnet_ends_of(range: vec2f) -> vec2f {
-    let levels = floor(range * 255.0 + 0.5);
-    let nearest = 255.0 - levels.x;
-    return vec2f(nearest, max(levels.y, nearest + 1.0));
-}
-
-// What a fragment writes: what it adds to the bins, and its depth.
-fn peelnet_bins(alpha: f32, zeta: f32) -> PeelnetBins {
-    let place = clamp(zeta * 4.0 + 3.5, 0.0, 7.0);
-    let level = peelnet_level(peelnet_absorbance(alpha));
-    return PeelnetBins(peelnet_in_bins(level, place, 0.0), peelnet_in_bins(level, place, 4.0), peelnet_range_of(zeta));
-}
-
-// How much of eight bins lies before a place among them: twice that, and a number that is the same for all places.
-fn peelnet_up_to(place: f32, front: vec4f, back: vec4f) -> f32 {
-    // A bin's own part is half of 1 + |place - its begin| - |place - its end|.
-    let a = abs(vec4f(place) - vec4f(0.0, 1.0, 2.0, 3.0));
-    let b = abs(vec4f(place) - vec4f(4.0, 5.0, 6.0, 7.0));
-    return dot(front, a - vec4f(a.yzw, b.x)) + dot(back, b - vec4f(b.yzw, abs(place - 8.0)));
-}
-
-// Where a depth lies in its pixel, 0 .. 1, by what is known of the pixel's depths: between its ends each bin takes as much as its length times
-// the root of what is seen of it. Where all bins are empty, it is the root of the frame's depth.
-fn peelnet_in_pixel(zeta: f32, front: vec4f, back: vec4f, range: vec2f) -> f32 {
-    let place = zeta * 4.0 + 4.0;
-    let near = peelnet_seen_behind(0.0, front);
-    let far = peelnet_seen_behind(dot(front, vec4f(1.0)), back);
-    let of_front = sqrt(abs(vec4f(1.0, near.xyz) - near));
-    let of_back = sqrt(abs(vec4f(near.w, far.xyz) - far));
-    // In bins.
-    let ends = peelnet_ends_of(range) * (8.0 / 255.0);
-    let begin = peelnet_up_to(ends.x, of_front, of_back);
-    let end = peelnet_up_to(ends.y, of_front, of_back);
-    let all = end - begin;
-    let passed = (peelnet_up_to(place, of_front, of_back) - begin) / max(all, 1e-6);
-    return select(clamp(passed, 0.0, 1.0), sqrt(place * 0.125), all == 0.0);
-}
-
-// t: where in its pixel the fragment lies, 0 .. 1.
-fn peelnet_place(alpha: f32, t: f32) -> PeelnetPlace {
+fn peelnet_place(alpha: f32, zeta: f32, quantiles: vec4f) -> PeelnetPlace {
     let b = peelnet_absorbance(alpha);
+    let t = peelnet_place_among(0.5 * zeta + 0.5, quantiles);
     let first = select(0.0, 1.0, t >= PEELNET_FIRST_END);
     let passed = first + select(0.0, 1.0, t >= PEELNET_SECOND_END) + select(0.0, 1.0, t >= PEELNET_THIRD_END);
     let slab = min(passed, PEELNET_LAST_SLAB);
@@ -353,8 +398,8 @@ fn peelnet_weigh(
 }
 
 // Where a slab ends and the next begins, in the pixel, and the number of the last slab.
-const PEELNET_FIRST_END: f32 = 0.475;
-const PEELNET_SECOND_END: f32 = 0.81;
+const PEELNET_FIRST_END: f32 = 0.4;
+const PEELNET_SECOND_END: f32 = 0.75;
 const PEELNET_THIRD_END: f32 = 1.0;
 const PEELNET_LAST_SLAB: f32 = 2.0;
 
@@ -367,9 +412,9 @@ struct PeelnetStatistics {
     farthest: vec4f,
 }
 
-// What a fragment adds to its pixel's statistics. t: where in its pixel it lies, as peelnet_in_pixel has it.
-fn peelnet_statistics(alpha: f32, t: f32) -> PeelnetStatistics {
-    let place = peelnet_place(alpha, t);
+// What a fragment adds to its pixel's statistics.
+fn peelnet_statistics(alpha: f32, zeta: f32, quantiles: vec4f) -> PeelnetStatistics {
+    let place = peelnet_place(alpha, zeta, quantiles);
     let halves = peelnet_records(alpha, place);
     let absorbances = peelnet_in_slab(place.absorbance, place.slab, 0.0);
     let nearest = peelnet_in_slab(halves.x, place.slab, PEELNET_EMPTY);
@@ -383,8 +428,8 @@ fn peelnet_statistics(alpha: f32, t: f32) -> PeelnetStatistics {
 }
 
 // The weight of a fragment, and whether it is known without the network.
-fn peelnet_fragment(alpha: f32, t: f32, absorbances: vec4f, nearest: vec4f, farthest: vec4f) -> vec2f {
-    let place = peelnet_place(alpha, t);
+fn peelnet_fragment(alpha: f32, zeta: f32, quantiles: vec4f, absorbances: vec4f, nearest: vec4f, farthest: vec4f) -> vec2f {
+    let place = peelnet_place(alpha, zeta, quantiles);
     let firsts = vec4f(absorbances.w, nearest.w, farthest.w, 0.0);
     return peelnet_weigh(place, alpha >= PEELNET_FAINT, absorbances, firsts, nearest, farthest, 3.0);
 }
@@ -413,27 +458,27 @@ fn peelnet_share(root_absorbance: f32, place_fraction: f32, mean_fraction: f32, 
     let input_a = vec4f(root_absorbance, place_fraction, mean_fraction, share_low);
     let input_b = vec4f(share_high, root_own, half_extent, of_own);
     let input_c = vec4f(of_nearest, 0.0, 0.0, 0.0);
-    let layer_a_a = max(vec4f(-1.4641386, -3.3562605, 8.56328, 7.9295816)
-        + mat4x4f(vec4f(-0.062875085, -0.044414904, -0.045489606, -0.07379496), vec4f(1.703964, 1.899293, -1.2000672, -2.6386976), vec4f(1.8144727, -1.7142202, -0.8144927, -0.71155626), vec4f(0.47746012, 0.9861568, 0.8539375, 2.5413916)) * input_a
-        + mat4x4f(vec4f(1.5533057, 1.7421483, 0.85063446, -1.2913522), vec4f(0.5555127, 0.8219148, -0.012739913, -1.4782242), vec4f(-0.5184329, 4.586603, 2.1503766, -2.4249082), vec4f(1.1940901, -3.0581594, -1.1037587, -1.0768601)) * input_b
-        + vec4f(-1.8912773, 0.5968488, -8.25149, -0.740267) * input_c.x, vec4f(0.0));
-    let layer_a_b = max(vec4f(-3.435276, -3.0695794, 3.38485, -9.666815)
-        + mat4x4f(vec4f(0.1240001, 0.050277658, -0.054266352, 0.15960346), vec4f(-1.4091853, 1.1852088, 2.4092836, 4.852766), vec4f(-1.7622716, -1.6526178, -3.9796207, 4.484973), vec4f(2.2075722, 3.8548405, 0.8623253, 3.6745415)) * input_a
-        + mat4x4f(vec4f(2.202639, 5.9497824, -0.058958687, 2.6287017), vec4f(1.348361, -0.5333857, -1.5144511, -0.18664494), vec4f(1.7184564, -0.055434026, -0.22081658, -0.3716273), vec4f(-0.40209323, -3.8325782, 1.8777025, 0.19611548)) * input_b
-        + vec4f(1.7847227, 0.8313226, -2.1540985, -1.1985334) * input_c.x, vec4f(0.0));
-    let layer_a_c = max(vec4f(1.0071908, 3.4967759, 5.591461, 4.5318055)
-        + mat4x4f(vec4f(-0.26753965, 0.06484478, -0.018652525, 0.08553129), vec4f(1.6324673, -2.843409, -0.45813456, -0.0043214555), vec4f(-3.7041008, -1.7365564, 2.6887474, -0.5723574), vec4f(-3.1260092, -1.8425844, -6.1553755, -7.8002076)) * input_a
-        + mat4x4f(vec4f(1.7835314, -1.1375017, -2.9750838, -1.3568959), vec4f(1.0672754, 0.076174654, 0.44796503, -0.3170386), vec4f(-0.4925571, -1.0347719, -2.3352869, 0.3858673), vec4f(-0.33531374, 0.28107768, -1.2299383, -4.0824766)) * input_b
-        + vec4f(1.068785, -0.8180279, -1.8280076, -0.27818996) * input_c.x, vec4f(0.0));
-    let layer_a_d = max(vec4f(12.364563, 0.0, 0.0, 0.0)
-        + mat4x4f(vec4f(0.010403197, 0.0, 0.0, 0.0), vec4f(0.14919655, 0.0, 0.0, 0.0), vec4f(-0.22271577, 0.0, 0.0, 0.0), vec4f(-5.0166383, 0.0, 0.0, 0.0)) * input_a
-        + mat4x4f(vec4f(-1.8775809, 0.0, 0.0, 0.0), vec4f(0.008815818, 0.0, 0.0, 0.0), vec4f(-1.6784344, 0.0, 0.0, 0.0), vec4f(-0.2517419, 0.0, 0.0, 0.0)) * input_b
-        + vec4f(-9.882709, 0.0, 0.0, 0.0) * input_c.x, vec4f(0.0));
-    let layer_b_a = 1.0 / (1.0 + exp(min(-(-0.037035838
-        + dot(vec4f(-0.68024015, 0.36019412, -0.42563558, -0.44534072), layer_a_a)
-        + dot(vec4f(-0.47680685, 1.0096582, 0.43886814, 1.5624919), layer_a_b)
-        + dot(vec4f(0.45026985, -0.9147628, -0.380483, -1.3764257), layer_a_c)
-        + 0.6037574 * layer_a_d.x), 80.0)));
+    let layer_a_a = max(vec4f(-4.498447, -2.6701427, 4.999467, 1.4303162)
+        + mat4x4f(vec4f(-0.024165843, -0.06619174, -0.0894137, -0.015284829), vec4f(1.3265, -3.2874584, -0.70561916, -3.0515947), vec4f(3.778825, -1.531765, -0.3332211, -1.004306), vec4f(0.7971547, -2.0386164, -3.046227, 0.63726395)) * input_a
+        + mat4x4f(vec4f(1.1255262, 0.534405, 0.522491, -1.3565203), vec4f(-0.29071623, 1.0490328, 0.27835515, -0.09670393), vec4f(-1.296448, 0.10561774, -0.3884336, 0.17241535), vec4f(2.2995408, -0.11920848, -3.8340485, -0.99373376)) * input_b
+        + vec4f(0.4358252, 5.9206295, 0.3670889, 1.3436236) * input_c.x, vec4f(0.0));
+    let layer_a_b = max(vec4f(2.0653932, -6.0528083, 1.7083477, -6.4319215)
+        + mat4x4f(vec4f(0.12285325, 0.17474158, -0.25738603, 0.14999948), vec4f(-1.0358131, 0.490535, 2.8561318, 5.422858), vec4f(0.86023754, -0.75434154, -1.9808092, 1.2833903), vec4f(-5.014721, 0.27430826, -0.82875806, 3.4427586)) * input_a
+        + mat4x4f(vec4f(0.13684608, 8.342782, -0.29210803, 1.1220578), vec4f(0.22268996, -0.090435036, -1.1434097, -0.5254657), vec4f(-0.58302504, -0.03554181, 0.18118803, 0.92999), vec4f(-6.372985, -3.9979587, 1.0330142, -3.0146995)) * input_b
+        + vec4f(4.15186, 0.4215023, -0.3557483, 1.7296917) * input_c.x, vec4f(0.0));
+    let layer_a_c = max(vec4f(-0.6208276, 7.4677916, -6.0561085, -2.0600226)
+        + mat4x4f(vec4f(-0.093884, 0.14485556, 0.07945557, -0.052132234), vec4f(-1.1132472, -1.6288756, 0.5282378, 0.01669853), vec4f(-0.2509708, -0.52644914, -5.2703047, 0.5375703), vec4f(-3.1858332, -5.1489344, -7.4003, -3.880237)) * input_a
+        + mat4x4f(vec4f(-1.5277979, -3.379662, 0.69836324, -3.4884565), vec4f(0.7421186, 0.20718975, 0.980553, 0.18979654), vec4f(-0.3197097, 0.06039786, 1.1576452, -1.2233107), vec4f(0.0688191, -4.0587616, 4.942371, 8.055541)) * input_b
+        + vec4f(3.8033671, -0.78402203, 3.2816844, -1.1312629) * input_c.x, vec4f(0.0));
+    let layer_a_d = max(vec4f(-1.7573652, 0.0, 0.0, 0.0)
+        + mat4x4f(vec4f(0.04958175, 0.0, 0.0, 0.0), vec4f(2.5011623, 0.0, 0.0, 0.0), vec4f(3.0395753, 0.0, 0.0, 0.0), vec4f(1.0385911, 0.0, 0.0, 0.0)) * input_a
+        + mat4x4f(vec4f(1.2886333, 0.0, 0.0, 0.0), vec4f(-0.45324615, 0.0, 0.0, 0.0), vec4f(-3.8363018, 0.0, 0.0, 0.0), vec4f(1.4736507, 0.0, 0.0, 0.0)) * input_b
+        + vec4f(-1.2805456, 0.0, 0.0, 0.0) * input_c.x, vec4f(0.0));
+    let layer_b_a = 1.0 / (1.0 + exp(min(-(-0.1205529
+        + dot(vec4f(-0.6124052, 0.3442704, -0.21568339, -2.6409829), layer_a_a)
+        + dot(vec4f(-0.39073837, 1.9212452, 0.36033517, 0.77580184), layer_a_b)
+        + dot(vec4f(0.21842586, -0.47065383, -0.5154158, -0.4392843), layer_a_c)
+        + 0.46073163 * layer_a_d.x), 80.0)));
     return layer_b_a;
 }
 
@@ -441,7 +486,7 @@ fn peelnet_share(root_absorbance: f32, place_fraction: f32, mean_fraction: f32, 
 fn peelnet_weight(root_absorbance: f32, place_fraction: f32, mean_fraction: f32, share_low: f32, share_high: f32, root_own: f32, half_extent: f32, of_own: f32, of_nearest: f32) -> f32 {
     let root = clamp(root_absorbance, 0.0, 256.0);
     let share = peelnet_share(
-        clamp(root_absorbance, -46549.746, 46561.754), clamp(place_fraction, -3128.1426, 3129.5498), clamp(mean_fraction, -2148.7454, 2150.152), clamp(share_low, -1742.304, 1742.5583), clamp(share_high, -2759.7317, 2761.3855), clamp(root_own, -5650.0513, 5651.64), clamp(half_extent, -2216.933, 2218.4595), clamp(of_own, -1664.0962, 1665.9397), clamp(of_nearest, -1659.8347, 1661.6699));
+        clamp(root_absorbance, -46986.324, 46999.176), clamp(place_fraction, -2679.9502, 2681.3418), clamp(mean_fraction, -1903.5188, 1904.905), clamp(share_low, -1680.4283, 1680.6422), clamp(share_high, -2318.284, 2319.986), clamp(root_own, -5800.3765, 5802.031), clamp(half_extent, -2581.1086, 2582.5159), clamp(of_own, -1597.1188, 1598.9757), clamp(of_nearest, -1612.0026, 1613.8546));
     let bounds = clamp(vec2f(share_low, share_high), vec2f(0.0), vec2f(1.0));
     return exp(-root * root * mix(bounds.x, bounds.y, share));
 }

@@ -28,7 +28,7 @@
 //    colour of the pixel: 0.6135939, 0.3594189, 0.24165452
 //
 // How to draw with it. Targets may have 32 bits a channel wherever 16 are named.
-// 0. zeta = peelnet_zeta(z, near, far): z is the distance along the view axis, near and far the range of z that the bounding boxes of the transparent objects in view span, clipped to the camera's. A tight range matters more than anything else you choose. Compute zeta with this function in all passes. Its range is the same for the whole frame: peelnet_zeta_in(z, peelnet_range(near, far)) is the same value, and the range may be passed in. Where boxes show that nothing lies between two depths, use peelnet_cut(zeta, gaps) for zeta: it leaves up to two such gaps out. quantiles says where among the depths around the pixel most is seen: peelnet_even() where nothing is known but near and far, with several times the error. noise is any number in 0 .. 1 that is the same for all of a pixel, such as peelnet_noise(pixel): it hides the steps of what is kept of the nearest fragment; 0.5 where that does not matter.
+// 0. zeta = peelnet_zeta(z, near, far): z is the distance along the view axis, near and far the range of z that the bounding boxes of the transparent objects in view span, clipped to the camera's. The tighter the range, the less errs. Compute zeta with this function in all passes. Its range is the same for the whole frame: peelnet_zeta_in(z, peelnet_range(near, far)) is the same value, and the range may be passed in. Where boxes show that nothing lies between two depths, use peelnet_cut(zeta, gaps) for zeta in all passes: it leaves up to two such gaps out. quantiles says where among the depths around the pixel most is seen: peelnet_even() where nothing is known but near and far, with several times the error. noise is any number in 0 .. 1 that is the same for all of a pixel, such as peelnet_noise(pixel): it hides the steps of what is kept of the nearest fragment; 0.5 where that does not matter.
 //    quantiles: rgba8unorm, a texture of one texel for 8 by 8 pixels, read with linear interpolation; peelnet_even() where it is not drawn.
 //    At its size, draw all transparent surfaces, in any order. float4x4 bins = peelnet_tile_bins(alpha, zeta);
 //    bins_a: rgba8unorm, cleared to 0, blending ADD, from bins[0]
@@ -199,12 +199,6 @@ metal::float4 peelnet_seen_behind(
     return metal::exp(levels_1 * -3.984375);
 }
 
-float peelnet_noise(
-    metal::uint2 pixel
-) {
-    return static_cast<float>(((pixel.x * 12664746u) + (pixel.y * 9560334u)) & 16777215u) * 0.000000059604645;
-}
-
 metal::float4 peelnet_even(
 ) {
     return metal::float4(0.06, 0.35, 0.65, 0.94);
@@ -325,6 +319,12 @@ metal::float4 peelnet_quantiles(
     float _e19 = peelnet_depth_at(shares_1.z, bins_6, _e5);
     float _e21 = peelnet_depth_at(shares_1.w, bins_6, _e5);
     return metal::float4(_e15, _e17, _e19, _e21);
+}
+
+float peelnet_noise(
+    metal::uint2 pixel
+) {
+    return static_cast<float>(((pixel.x * 12664746u) + (pixel.y * 9560334u)) & 16777215u) * 0.000000059604645;
 }
 
 metal::float4 peelnet_to_unit(

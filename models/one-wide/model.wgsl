@@ -28,7 +28,7 @@
 //    colour of the pixel: 0.6135939, 0.3594189, 0.24165452
 //
 // How to draw with it. Targets may have 32 bits a channel wherever 16 are named.
-// 0. zeta = peelnet_zeta(z, near, far): z is the distance along the view axis, near and far the range of z that the bounding boxes of the transparent objects in view span, clipped to the camera's. A tight range matters more than anything else you choose. Compute zeta with this function in all passes. Its range is the same for the whole frame: peelnet_zeta_in(z, peelnet_range(near, far)) is the same value, and the range may be passed in. Where boxes show that nothing lies between two depths, use peelnet_cut(zeta, gaps) for zeta: it leaves up to two such gaps out. quantiles says where among the depths around the pixel most is seen: peelnet_even() where nothing is known but near and far, with several times the error. noise is any number in 0 .. 1 that is the same for all of a pixel, such as peelnet_noise(pixel): it hides the steps of what is kept of the nearest fragment; 0.5 where that does not matter.
+// 0. zeta = peelnet_zeta(z, near, far): z is the distance along the view axis, near and far the range of z that the bounding boxes of the transparent objects in view span, clipped to the camera's. The tighter the range, the less errs. Compute zeta with this function in all passes. Its range is the same for the whole frame: peelnet_zeta_in(z, peelnet_range(near, far)) is the same value, and the range may be passed in. Where boxes show that nothing lies between two depths, use peelnet_cut(zeta, gaps) for zeta in all passes: it leaves up to two such gaps out. quantiles says where among the depths around the pixel most is seen: peelnet_even() where nothing is known but near and far, with several times the error. noise is any number in 0 .. 1 that is the same for all of a pixel, such as peelnet_noise(pixel): it hides the steps of what is kept of the nearest fragment; 0.5 where that does not matter.
 //    quantiles: rgba8unorm, a texture of one texel for 8 by 8 pixels, read with linear interpolation; peelnet_even() where it is not drawn.
 //    At its size, draw all transparent surfaces, in any order. let bins = peelnet_tile_bins(alpha, zeta);
 //    bins_a: rgba8unorm, cleared to 0, blending ADD, from bins[0]
@@ -139,43 +139,6 @@ fn peelnet_seen_behind(before: f32, bins: vec4f) -> vec4f {
 // Bins of depth, and levels of opacity in each, of the nearest fragment of a tile's pixel.
 const PEELNET_TILE_DEPTHS: f32 = 240.0;
 const PEELNET_TILE_OPACITIES: f32 = 256.0;
-// Levels of depth, and of a value in each, that a pixel's nearest fragment is kept with.
-const PEELNET_DEPTHS: f32 = 480.0;
-const PEELNET_VALUES: f32 = 128.0;
-// b / (1 + b) of the most absorbance.
-const PEELNET_MOST: f32 = 0.941176471;
-
-// What is known of how much lies in front of one of a pixel's sums.
-struct PeelnetAhead {
-    // By the formula.
-    absorbance: f32,
-    // Absorbance of all sums, and the shares of it in the sums before, in this one, and in those before and behind it.
-    total: f32,
-    before: f32,
-    own: f32,
-    previous: f32,
-    next: f32,
-    // Opacity of the nearest fragment, and where it lies among the quantiles.
-    alpha: f32,
-    place: f32,
-    // 0 for the first sum, 1 for the last.
-    number: f32,
-}
-
-struct PeelnetNearest {
-    color: vec3f,
-    absorbance: f32,
-    place: f32,
-    // Coverage of the pixel, the nearest fragment's part of it, and what is left for the sums.
-    coverage: f32,
-    alpha: f32,
-    left: f32,
-}
-
-// The noise of a pixel, 0 .. 1: neighbours' lie far apart (Roberts 2018, the sequence R2).
-fn peelnet_noise(pixel: vec2u) -> f32 {
-    return f32((pixel.x * 12664746u + pixel.y * 9560334u) & 16777215u) * (1.0 / 16777216.0);
-}
 
 // The quantiles of a frame of which only near and far are known.
 fn peelnet_even() -> vec4f {
@@ -269,6 +232,44 @@ fn peelnet_quantiles(seen: mat4x4f) -> vec4f {
         peelnet_depth_at(shares.z, bins, before),
         peelnet_depth_at(shares.w, bins, before),
     );
+}
+
+// Levels of depth, and of a value in each, that a pixel's nearest fragment is kept with.
+const PEELNET_DEPTHS: f32 = 480.0;
+const PEELNET_VALUES: f32 = 128.0;
+// b / (1 + b) of the most absorbance.
+const PEELNET_MOST: f32 = 0.941176471;
+
+// What is known of how much lies in front of one of a pixel's sums.
+struct PeelnetAhead {
+    // By the formula.
+    absorbance: f32,
+    // Absorbance of all sums, and the shares of it in the sums before, in this one, and in those before and behind it.
+    total: f32,
+    before: f32,
+    own: f32,
+    previous: f32,
+    next: f32,
+    // Opacity of the nearest fragment, and where it lies among the quantiles.
+    alpha: f32,
+    place: f32,
+    // 0 for the first sum, 1 for the last.
+    number: f32,
+}
+
+struct PeelnetNearest {
+    color: vec3f,
+    absorbance: f32,
+    place: f32,
+    // Coverage of the pixel, the nearest fragment's part of it, and what is left for the sums.
+    coverage: f32,
+    alpha: f32,
+    left: f32,
+}
+
+// The noise of a pixel, 0 .. 1: neighbours' lie far apart (Roberts 2018, the sequence R2).
+fn peelnet_noise(pixel: vec2u) -> f32 {
+    return f32((pixel.x * 12664746u + pixel.y * 9560334u) & 16777215u) * (1.0 / 16777216.0);
 }
 
 // Values without bound in 0 .. 1, in even steps of a root, and back.

@@ -3,45 +3,47 @@
 // WGSL, plain WebGPU. Compiled by naga, and run on a GPU against the network at every export.
 // Network: 5-1 (Relu hidden, Sigmoid last), 6 parameters, 5 multiply-adds. Recipe small, seed 1, 40 epochs.
 // Answers: transmittance of what lies between a slab's known ends, exp(-absorbance * share) with absorbance = root_absorbance^2 and share in share_low .. share_high.
-// Input 0: root_absorbance (root of the absorbance between the slab's ends), 0.0 .. 21.357683 in training.
+// Input 0: root_absorbance (root of the absorbance between the slab's ends), 0.0 .. 21.413115 in training.
 // Input 1: place_fraction (of the way between the slab's ends), 0.0 .. 1.0 in training.
 // Input 2: mean_fraction (of the way between the slab's ends), 0.0 .. 1.0 in training.
 // Input 3: share_low (of the absorbance between the slab's ends), 0.0 .. 1.0 in training.
 // Input 4: share_high (of the absorbance between the slab's ends), 0.0 .. 1.0 in training.
 // Trained on 21565798 rows of boxes, cups, foliage, intersecting, opaque-mix, panes, sixteen-025, sixteen-050, sixteen-075, sixteen-085, sixteen-random-alpha, sixteen-random-color, smoke-100, smoke-30, synthetic (dataset f0e6c4a7cca08d560f99a5be9cbd1514bf8be352632a347602bf08363695fd29+e22e844788a454658277e87e23685b5ffa00e3ad2d48cb833cc53130eaf4d8b7).
-// Loss: training 0.000189, validation 0.000174, test 0.000189.
-// Held-out error, mean |T - T_exact|: boxes-held 0.00404, cups-held 0.00323, foliage-held 0.00118, panes-held 0.00034, sixteen-held 0.00104, smoke-held 0.00646.
+// Loss: training 0.000179, validation 0.000166, test 0.000172.
+// Held-out error, mean |T - T_exact|: boxes-held 0.00404, cups-held 0.00393, foliage-held 0.00262, panes-held 0.00095, sixteen-held 0.00166, smoke-held 0.00442.
 //
 // Self-tests, to some roundings of 32 bits; weights and colours also to those of 16-bit targets.
-// peelnet_weight(8.3122, 0.014353275, 0.21181071, 0.010463357, 0.22229642) = 0.11433573
-// peelnet_weight(3.2597346, 0.3421247, 0.95406777, 0.022867262, 0.49329907) = 0.3541614
-// peelnet_weight(3.7591152, 0.5225114, 0.08770603, 0.111551285, 0.022744834) = 0.35908517
+// peelnet_weight(8.333773, 0.014353275, 0.21181071, 0.010463357, 0.22229642) = 0.28606492
+// peelnet_weight(3.268195, 0.3421247, 0.95406777, 0.022867262, 0.49329907) = 0.42661902
+// peelnet_weight(3.7688715, 0.5225114, 0.08770603, 0.111551285, 0.022744834) = 0.23633718
 // Four fragments of a pixel, near 1.0, far 8.0, background 0.25, 0.5, 0.75:
 //    z 1.0, alpha 0.5, rgb 1.0, 0.0, 0.0: zeta -1.0, weight 1.0
 //    z 2.0, alpha 0.5, rgb 0.0, 1.0, 0.0: zeta -0.33333334, weight 0.5
 //    z 4.0, alpha 0.5, rgb 0.0, 0.0, 1.0: zeta 0.33333334, weight 0.25
 //    z 8.0, alpha 0.9, rgb 1.0, 1.0, 1.0: zeta 1.0, weight 0.125
-//    target bins_front: 0.17254902, 0.0, 0.14509805, 0.02745098
-//    target bins_back: 0.02745098, 0.14509805, 0.0, 0.5764706
-//    target range: 1.0, 1.0
-//    target absorbances: 1.3862944, 0.6931472, 2.302585, -0.053311266
-//    target nearest: 64928.0, -1970.0, -64768.0, 13928.0
-//    target firsts: 0.5755399, 2.302585
+//    target absorbances: 1.3862944, 0.6931472, 2.302585, -0.44323698
+//    target nearest: 64928.0, -0.014541626, -64768.0, 0.11407471
+//    target firsts: 0.18153855, 2.302585
 //    colour of the pixel: 0.615625, 0.36875, 0.246875
 //
 // How to draw with it. Targets may have 32 bits a channel wherever 16 are named.
-// 0. zeta = peelnet_zeta(z, near, far): z is the distance along the view axis, near and far the range of z that the bounding boxes of the transparent objects in view span, clipped to the camera's. A tight range matters more than anything else you choose. Compute zeta with this function in all passes. Its range is the same for the whole frame: peelnet_zeta_in(z, peelnet_range(near, far)) is the same value, and the range may be passed in. Where boxes show that nothing lies between two depths, use peelnet_cut(zeta, gaps) for zeta in all passes: it leaves up to two such gaps out.
-// 1. Pass "range": draw all transparent surfaces, in any order. let bins = peelnet_bins(alpha, zeta);
-//    bins_front: rgba8unorm, cleared to 0, blending ADD, from bins.front
-//    bins_back: rgba8unorm, cleared to 0, blending ADD, from bins.back
-//    range: rg8unorm, cleared to 0, blending MAX, from bins.range
-// 2. Pass "statistics": draw all transparent surfaces, in any order. let s = peelnet_statistics(alpha, peelnet_in_pixel(zeta, bins_front, bins_back, range));
+// 0. zeta = peelnet_zeta(z, near, far): z is the distance along the view axis, near and far the range of z that the bounding boxes of the transparent objects in view span, clipped to the camera's. The tighter the range, the less errs. Compute zeta with this function in all passes. Its range is the same for the whole frame: peelnet_zeta_in(z, peelnet_range(near, far)) is the same value, and the range may be passed in. Where boxes show that nothing lies between two depths, use peelnet_cut(zeta, gaps) for zeta in all passes: it leaves up to two such gaps out. quantiles says where among the depths around the pixel most is seen: peelnet_even() where nothing is known but near and far, with several times the error.
+//    quantiles: rgba8unorm, a texture of one texel for 8 by 8 pixels, read with linear interpolation; peelnet_even() where it is not drawn.
+//    At its size, draw all transparent surfaces, in any order. let bins = peelnet_tile_bins(alpha, zeta);
+//    bins_a: rgba8unorm, cleared to 0, blending ADD, from bins[0]
+//    bins_b: rgba8unorm, cleared to 0, blending ADD, from bins[1]
+//    bins_c: rgba8unorm, cleared to 0, blending ADD, from bins[2]
+//    bins_d: rg8unorm, cleared to 0, blending ADD, from bins[3].xy
+//    bins_e: rg8unorm, cleared to 0, blending ADD, from bins[3].zw
+//    tile_nearest: r16float, cleared to -65504, blending MAX, from peelnet_tile_nearest(alpha, zeta)
+//    Then each of its texels is peelnet_quantiles(sum): sum adds, over the 3 by 3 texels around it, peelnet_tile_seen(mat4x4f(bins_a, bins_b, bins_c, vec4f(bins_d, bins_e)), tile_nearest).
+// 1. Pass "statistics": draw all transparent surfaces, in any order. let s = peelnet_statistics(alpha, zeta, quantiles);
 //    absorbances: rgba16float, cleared to 0, blending ADD, from s.absorbances
 //    nearest: rgba16float, cleared to -65504, blending MAX, from s.nearest
 //    firsts: rg16float, cleared to 0, blending ADD, from s.firsts
-// 3. Pass "weights": draw all transparent surfaces, in any order. let w = peelnet_fragment(alpha, peelnet_in_pixel(zeta, bins_front, bins_back, range), absorbances, nearest, firsts).x;
+// 2. Pass "weights": draw all transparent surfaces, in any order. let w = peelnet_fragment(alpha, zeta, quantiles, absorbances, nearest, firsts).x;
 //    sums: rgba16float, cleared to 0, blending ADD, from vec4f(alpha * rgb, alpha) * w
-// 4. Resolve: peelnet_resolve(sums, absorbances.x + absorbances.y + absorbances.z, background) is the colour of the pixel, and its coverage in alpha.
+// 3. Resolve: peelnet_resolve(sums, absorbances.x + absorbances.y + absorbances.z, background) is the colour of the pixel, and its coverage in alpha.
 // - alpha is opacity, rgb the linear colour that is not multiplied by it. Resolve before tone mapping and encoding.
 // - Test depth against the opaque surfaces, do not write it: a depth prepass with transparent surfaces in it hides what lies behind.
 // - z grows with distance, also where depth buffers are reversed.
@@ -129,6 +131,104 @@ fn peelnet_seen_behind(before: f32, bins: vec4f) -> vec4f {
     return exp(levels * (-255.0 / PEELNET_BIN_LEVELS));
 }
 
+// Bins of depth, and levels of opacity in each, of the nearest fragment of a tile's pixel.
+const PEELNET_TILE_DEPTHS: f32 = 240.0;
+const PEELNET_TILE_OPACITIES: f32 = 256.0;
+
+// The quantiles of a frame of which only near and far are known.
+fn peelnet_even() -> vec4f {
+    return vec4f(0.06, 0.35, 0.65, 0.94);
+}
+
+// Where a depth, 0 .. 1 of the frame's, lies among quantiles, 0 .. 1.
+fn peelnet_place_among(depth: f32, quantiles: vec4f) -> f32 {
+    let begin = vec4f(0.0, quantiles.xyz);
+    let parts = clamp((vec4f(depth) - begin) / max(quantiles - begin, vec4f(1e-4)), vec4f(0.0), vec4f(1.0));
+    let last = clamp((depth - quantiles.w) / max(1.0 - quantiles.w, 1e-4), 0.0, 1.0);
+    return dot(parts, vec4f(0.06, 0.29, 0.3, 0.29)) + 0.06 * last;
+}
+
+// What a level adds to sixteen bins of depth: four in a column, nearest first.
+fn peelnet_tile_levels(level: f32, depth: f32) -> mat4x4f {
+    let place = clamp(depth * 16.0 - 0.5, 0.0, 15.0);
+    return mat4x4f(
+        peelnet_in_bins(level, place, 0.0),
+        peelnet_in_bins(level, place, 4.0),
+        peelnet_in_bins(level, place, 8.0),
+        peelnet_in_bins(level, place, 12.0),
+    );
+}
+
+// What a fragment adds to the bins of its tile, of 8 bits.
+fn peelnet_tile_bins(alpha: f32, zeta: f32) -> mat4x4f {
+    return peelnet_tile_levels(peelnet_level(peelnet_absorbance(alpha)), 0.5 * zeta + 0.5);
+}
+
+// What a fragment writes as the nearest of its tile's pixel, where the most is kept.
+fn peelnet_tile_nearest(alpha: f32, zeta: f32) -> f32 {
+    let b = peelnet_absorbance(alpha);
+    let bin = min(floor((0.5 * zeta + 0.5) * PEELNET_TILE_DEPTHS), PEELNET_TILE_DEPTHS - 1.0);
+    let opacity = floor(b / (b + 1.0) * (1.0625 * (PEELNET_TILE_OPACITIES - 1.0)) + 0.5);
+    return peelnet_halves(vec3f((PEELNET_TILE_DEPTHS - 1.0 - bin) * PEELNET_TILE_OPACITIES + opacity)).x;
+}
+
+// What the columns of bins before each hold together.
+fn peelnet_before(bins: mat4x4f) -> vec4f {
+    let all = vec4f(1.0) * bins;
+    return vec4f(0.0, all.x, all.x + all.y, all.x + all.y + all.z);
+}
+
+// Of four bins what is seen behind the nearest fragment. before: what all bins before them hold.
+fn peelnet_seen(bins: vec4f, taken: vec4f, before: f32) -> vec4f {
+    let through = peelnet_seen_behind(before, bins);
+    let seen = vec4f(exp(before * (-255.0 / PEELNET_BIN_LEVELS)), through.xyz) - through;
+    return seen * max(bins - taken, vec4f(0.0)) / max(bins, vec4f(1.0 / 255.0));
+}
+
+// What is seen in a tile's pixel behind its nearest fragment. bins, nearest: as the targets hold them.
+fn peelnet_tile_seen(bins: mat4x4f, nearest: f32) -> mat4x4f {
+    let level = max(peelnet_levels(vec3f(nearest)).x, 0.0);
+    let back = floor(level * (1.0 / PEELNET_TILE_OPACITIES));
+    let opacity = (level - back * PEELNET_TILE_OPACITIES) * (1.0 / (PEELNET_TILE_OPACITIES - 1.0));
+    let depth = (PEELNET_TILE_DEPTHS - back - 0.5) / PEELNET_TILE_DEPTHS;
+    let taken = peelnet_tile_levels(peelnet_level(opacity / (1.0625 - opacity)), depth);
+    let before = peelnet_before(bins);
+    return mat4x4f(
+        peelnet_seen(bins[0], taken[0], before.x),
+        peelnet_seen(bins[1], taken[1], before.y),
+        peelnet_seen(bins[2], taken[2], before.z),
+        peelnet_seen(bins[3], taken[3], before.w),
+    );
+}
+
+// How many of four bins lie before a share. before: what the bins before them hold.
+fn peelnet_passed(share: f32, before: f32, bins: vec4f) -> f32 {
+    let two = bins.x + bins.y;
+    let begin = vec4f(before) + vec4f(0.0, bins.x, two, two + bins.z);
+    return dot(clamp((vec4f(share) - begin) / max(bins, vec4f(1e-9)), vec4f(0.0), vec4f(1.0)), vec4f(1.0));
+}
+
+// The depth before which a share of sixteen bins lies. before: as of peelnet_before.
+fn peelnet_depth_at(share: f32, bins: mat4x4f, before: vec4f) -> f32 {
+    let front = peelnet_passed(share, before.x, bins[0]) + peelnet_passed(share, before.y, bins[1]);
+    return 0.0625 * (front + peelnet_passed(share, before.z, bins[2]) + peelnet_passed(share, before.w, bins[3]));
+}
+
+// The quantiles of what is seen in nine pixels together.
+fn peelnet_quantiles(seen: mat4x4f) -> vec4f {
+    // Evenly spread where nothing is known.
+    let even = vec4f(0.00125);
+    let bins = seen + mat4x4f(even, even, even, even);
+    let before = peelnet_before(bins);
+    let shares = peelnet_even() * (before.w + dot(bins[3], vec4f(1.0)));
+    return vec4f(
+        peelnet_depth_at(shares.x, bins, before),
+        peelnet_depth_at(shares.y, bins, before),
+        peelnet_depth_at(shares.z, bins, before),
+        peelnet_depth_at(shares.w, bins, before),
+    );
+}
+
 // Fragments of less opacity are composited, but are never a slab's nearest or farthest.
 const PEELNET_FAINT: f32 = 0.003921569;
 // Bins of depth in a slab, and levels of opacity in each, that its nearest and its farthest fragment are kept with.
@@ -169,64 +269,9 @@ struct PeelnetBetween {
     nearest: f32,
 }
 
-// What is known of a pixel's depths, in 8 bits.
-struct PeelnetBins {
-    // Absorbances of eight bins of the frame's depth, nearest first.
-    front: vec4f,
-    back: vec4f,
-    // The level of the nearest depth, counted from the far end, and of the farthest.
-    range: vec2f,
-}
-
-// The two ends of a pixel that a depth alone would have: its level counted from the far end, rounded down from the near one, and its level,
-// rounded up. Of each the most is kept.
-fn peelnet_range_of(zeta: f32) -> vec2f {
-    let level = 127.5 * (zeta + 1.0);
-    return vec2f(255.0 - floor(level), ceil(level)) / 255.0;
-}
-
-// The levels, 0 .. 255, of the nearest and of the farthest depth of a pixel, at least one apart.
-fn peelnet_ends_of(range: vec2f) -> vec2f {
-    let levels = floor(range * 255.0 + 0.5);
-    let nearest = 255.0 - levels.x;
-    return vec2f(nearest, max(levels.y, nearest + 1.0));
-}
-
-// What a fragment writes: what it adds to the bins, and its depth.
-fn peelnet_bins(alpha: f32, zeta: f32) -> PeelnetBins {
-    let place = clamp(zeta * 4.0 + 3.5, 0.0, 7.0);
-    let level = peelnet_level(peelnet_absorbance(alpha));
-    return PeelnetBins(peelnet_in_bins(level, place, 0.0), peelnet_in_bins(level, place, 4.0), peelnet_range_of(zeta));
-}
-
-// How much of eight bins lies before a place among them: twice that, and a number that is the same for all places.
-fn peelnet_up_to(place: f32, front: vec4f, back: vec4f) -> f32 {
-    // A bin's own part is half of 1 + |place - its begin| - |place - its end|.
-    let a = abs(vec4f(place) - vec4f(0.0, 1.0, 2.0, 3.0));
-    let b = abs(vec4f(place) - vec4f(4.0, 5.0, 6.0, 7.0));
-    return dot(front, a - vec4f(a.yzw, b.x)) + dot(back, b - vec4f(b.yzw, abs(place - 8.0)));
-}
-
-// Where a depth lies in its pixel, 0 .. 1, by what is known of the pixel's depths: between its ends each bin takes as much as its length times
-// the root of what is seen of it. Where all bins are empty, it is the root of the frame's depth.
-fn peelnet_in_pixel(zeta: f32, front: vec4f, back: vec4f, range: vec2f) -> f32 {
-    let place = zeta * 4.0 + 4.0;
-    let near = peelnet_seen_behind(0.0, front);
-    let far = peelnet_seen_behind(dot(front, vec4f(1.0)), back);
-    let of_front = sqrt(abs(vec4f(1.0, near.xyz) - near));
-    let of_back = sqrt(abs(vec4f(near.w, far.xyz) - far));
-    // In bins.
-    let ends = peelnet_ends_of(range) * (8.0 / 255.0);
-    let begin = peelnet_up_to(ends.x, of_front, of_back);
-    let end = peelnet_up_to(ends.y, of_front, of_back);
-    let all = end - begin;
-    let passed = (peelnet_up_to(place, of_front, of_back) - begin) / max(all, 1e-6);
-    return select(clamp(passed, 0.0, 1.0), sqrt(place * 0.125), all == 0.0);
-}
-
-// t: where in its pixel the fragment lies, 0 .. 1.
-fn peelnet_place(alpha: f32, t: f32) -> PeelnetPlace {
+fn peelnet_place(alpha: f32, zeta: f32, quantiles: vec4f) -> PeelnetPlace {
     let b = peelnet_absorbance(alpha);
+    let t = peelnet_place_among(0.5 * zeta + 0.5, quantiles);
     let first = select(0.0, 1.0, t >= PEELNET_FIRST_END);
     let passed = first + select(0.0, 1.0, t >= PEELNET_SECOND_END) + select(0.0, 1.0, t >= PEELNET_THIRD_END);
     let slab = min(passed, PEELNET_LAST_SLAB);
@@ -363,9 +408,9 @@ struct PeelnetStatistics {
     firsts: vec2f,
 }
 
-// What a fragment adds to its pixel's statistics. t: where in its pixel it lies, as peelnet_in_pixel has it.
-fn peelnet_statistics(alpha: f32, t: f32) -> PeelnetStatistics {
-    let place = peelnet_place(alpha, t);
+// What a fragment adds to its pixel's statistics.
+fn peelnet_statistics(alpha: f32, zeta: f32, quantiles: vec4f) -> PeelnetStatistics {
+    let place = peelnet_place(alpha, zeta, quantiles);
     let halves = peelnet_records(alpha, place);
     let absorbances = peelnet_in_slab(place.absorbance, place.slab, 0.0);
     let nearest = peelnet_in_slab(halves.x, place.slab, PEELNET_EMPTY);
@@ -375,8 +420,8 @@ fn peelnet_statistics(alpha: f32, t: f32) -> PeelnetStatistics {
 }
 
 // The weight of a fragment, and whether it is known without the network.
-fn peelnet_fragment(alpha: f32, t: f32, absorbances: vec4f, nearest: vec4f, firsts: vec2f) -> vec2f {
-    let place = peelnet_place(alpha, t);
+fn peelnet_fragment(alpha: f32, zeta: f32, quantiles: vec4f, absorbances: vec4f, nearest: vec4f, firsts: vec2f) -> vec2f {
+    let place = peelnet_place(alpha, zeta, quantiles);
     let means = vec4f(absorbances.w, firsts, 0.0);
     let last = vec4f(nearest.w, vec3f(PEELNET_EMPTY));
     return peelnet_weigh(place, alpha >= PEELNET_FAINT, absorbances, means, nearest, last, 1.0);
@@ -405,9 +450,9 @@ fn peelnet_network(between: PeelnetBetween) -> f32 {
 fn peelnet_share(root_absorbance: f32, place_fraction: f32, mean_fraction: f32, share_low: f32, share_high: f32) -> f32 {
     let input_a = vec4f(root_absorbance, place_fraction, mean_fraction, share_low);
     let input_b = vec4f(share_high, 0.0, 0.0, 0.0);
-    let layer_a_a = 1.0 / (1.0 + exp(min(-(-1.2840182
-        + dot(vec4f(-0.10227359, 2.064883, -1.067868, 3.8891916), input_a)
-        + 0.35571918 * input_b.x), 80.0)));
+    let layer_a_a = 1.0 / (1.0 + exp(min(-(-2.3941505
+        + dot(vec4f(-0.1540126, 0.85447216, -0.4019599, 4.09488), input_a)
+        + 1.8473954 * input_b.x), 80.0)));
     return layer_a_a;
 }
 
@@ -415,7 +460,7 @@ fn peelnet_share(root_absorbance: f32, place_fraction: f32, mean_fraction: f32, 
 fn peelnet_weight(root_absorbance: f32, place_fraction: f32, mean_fraction: f32, share_low: f32, share_high: f32) -> f32 {
     let root = clamp(root_absorbance, 0.0, 256.0);
     let share = peelnet_share(
-        clamp(root_absorbance, -47155.3, 47167.48), clamp(place_fraction, -3108.6145, 3110.0657), clamp(mean_fraction, -2194.5725, 2196.0022), clamp(share_low, -1815.2799, 1815.5402), clamp(share_high, -2762.597, 2764.2634));
+        clamp(root_absorbance, -47076.56, 47088.934), clamp(place_fraction, -2684.1946, 2685.5208), clamp(mean_fraction, -1983.4043, 1984.7168), clamp(share_low, -1842.8657, 1843.1003), clamp(share_high, -2216.2056, 2217.918));
     let bounds = clamp(vec2f(share_low, share_high), vec2f(0.0), vec2f(1.0));
     return exp(-root * root * mix(bounds.x, bounds.y, share));
 }

@@ -171,7 +171,8 @@ fn furthest(a: &Image, b: &Image) -> f32 {
 }
 
 /// Where every pixel holds the same fragments, any scale gives the image of the full resolution, for frames of odd sizes too. Compositing over
-/// black and then over `C_0` rounds a few times more than compositing over `C_0`.
+/// black and then over `C_0` rounds a few times more than compositing over `C_0`. Where depths are placed among those around a pixel, other tiles
+/// cut other slabs, whose sums are rounded to half floats otherwise.
 #[test]
 fn a_lower_resolution_keeps_what_does_not_vary() {
     const ROUNDING: f32 = 1e-5;
@@ -185,7 +186,9 @@ fn a_lower_resolution_keeps_what_does_not_vary() {
             let low = spec.with("scale", scale).unwrap();
             let low = draw(&gpu, &walls, &low, [7, 5]);
             let apart = furthest(&full, &low);
-            assert!(apart <= ROUNDING, "{spec} at {scale}: {apart}");
+            let has_tiles = spec.method().parameters.iter().any(|p| p.name == "range");
+            let limit = if has_tiles { HALF } else { ROUNDING };
+            assert!(apart <= limit, "{spec} at {scale}: {apart}");
             assert!(scale != "1" || full == low, "{spec}");
         }
         for scale in ["0", "-1", "1.5", "nan", "half"] {

@@ -37,7 +37,7 @@ fn designs_are_measured_as_they_are_drawn() {
     let line = "bench designs d s.toml --file f.toml --size 96x64 --out o";
     folder.prints(line);
     let found = folder.json(line);
-    for (row, name, bytes) in [(0, "small", 38), (1, "three", 44)] {
+    for (row, name, bytes) in [(0, "small", 29), (1, "three", 35)] {
         let row = &rows(&found)[row];
         assert!(row["design"] == name && row["bytes"] == bytes, "{row}");
         assert!(row["seconds"].as_f64().unwrap() > 0.0, "{row}");

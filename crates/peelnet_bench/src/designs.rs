@@ -43,7 +43,7 @@ pub const DESIGNS: &str = "data/designs.toml";
 pub struct Entry {
     pub name: String,
     pub design: Design,
-    /// What is cut into slabs. Where the design has no such case, the network learns from the pixel's own range.
+    /// What is cut into slabs. A network of [`Source::Frame`] learns among the quantiles of tiles, one of [`Source::Boxes`] between the pixel's ends.
     pub source: Source,
     pub inputs: &'static [&'static Feature<Interior>],
     /// What is trained; its examples may be gathered with the sums apart where the design has one sum.

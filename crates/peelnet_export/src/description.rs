@@ -68,8 +68,8 @@ impl Description {
                 every,
                 ..
             } = around;
-            let calls = [around.sum, around.last, around.write, around.otherwise];
-            let [sum, last, write, otherwise] = calls.map(|call| language.expression(call));
+            let calls = [around.sum, around.write, around.otherwise];
+            let [sum, write, otherwise] = calls.map(|call| language.expression(call));
             lines.push(format!(
                 "   {name}: {format}, a texture of one texel for {every} by {every} pixels, read with linear interpolation; {otherwise} where it is not drawn."
             ));
@@ -78,9 +78,10 @@ impl Description {
             lines.push(format!(
                 "   Then each of its texels is {write}: sum adds, over the 3 by 3 texels around it, {sum}."
             ));
-            lines.push(format!(
+            let last = around.last.map(|call| language.expression(call));
+            lines.extend(last.map(|last| format!(
                 "   Or make it without that pass from what the last frame kept of the pixel in the middle of each of them, of {last}, but for the first frame and after jumps of the camera."
-            ));
+            )));
         }
         for (k, pass) in (1..).zip(self.passes) {
             let (name, drawn) = (pass.name, drawn(pass, language));

@@ -86,11 +86,9 @@ pub(super) fn of_boxes(view: &View, scene: &Scene, camera: &Camera, size: [u32; 
 /// Quantiles of what is seen around each pixel of a view that has fragments.
 pub(super) fn of_tiles(view: &View, size: [u32; 2]) -> Vec<Extent> {
     let pixel = |place: usize| [place as u32 % size[0], place as u32 / size[0]];
-    let looked_at = |[x, y]: [u32; 2]| {
-        let middle = |n: u32, size: u32| (n / TILE * TILE + TILE / 2).min(size - 1);
-        [x, y] == [middle(x, size[0]), middle(y, size[1])]
-    };
-    let stacks = view.stacks.iter().filter(|s| looked_at(pixel(s.place)));
+    let is_middle = |n: u32| n % TILE == TILE / 2;
+    let stacks = view.stacks.iter();
+    let stacks = stacks.filter(|s| pixel(s.place).into_iter().all(is_middle));
     let seen = stacks.map(|stack| {
         let points = slabs::points(&fragment::points(&stack.fragments), &view.warp);
         let tile = pixel(stack.place).map(|n| n / TILE);

@@ -157,12 +157,14 @@ const BEFORE: &str = concat!(
 );
 
 static AROUND_ONE: SmallTexture = SmallTexture {
-    last: "peelnet_last_seen(sum_a, sum_b, sum_c, absorbances, quantiles, noise)",
+    last: Some("peelnet_last_seen(sum_a, sum_b, sum_c, absorbances, quantiles, noise)"),
     ..QUANTILES
 };
 
 static AROUND_WIDE: SmallTexture = SmallTexture {
-    last: "peelnet_last_seen(sum_a, sum_b, sum_c, sum_d, sum_e, sum_f, absorbances, absorbances_back, quantiles, noise)",
+    last: Some(
+        "peelnet_last_seen(sum_a, sum_b, sum_c, sum_d, sum_e, sum_f, absorbances, absorbances_back, quantiles, noise)",
+    ),
     ..QUANTILES
 };
 

@@ -114,8 +114,10 @@ pub struct SmallTexture {
     pub pass: Pass,
     /// What to sum of those targets over the 3 × 3 texels around each.
     pub sum: &'static str,
-    /// What to sum instead where it is made for the next frame, of what the passes keep of the pixel in the middle of each texel.
-    pub last: &'static str,
+    /// What to sum instead where it is made for the next frame, of what the passes keep of the pixel in the middle of each texel; `None` where they
+    /// do not say it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub last: Option<&'static str>,
     /// A texel's value, of `sum`.
     pub write: &'static str,
     /// Stands for it where it is not drawn.
@@ -134,8 +136,8 @@ pub(super) const SUMS: &[Target] = &[sum("sums", HALF, WEIGHTED)];
 macro_rules! zeta {
     () => {
         "zeta = peelnet_zeta(z, near, far): z is the distance along the view axis, near and far the range of z that the \
-    bounding boxes of the transparent objects in view span, clipped to the camera's. A tight range matters more than anything else \
-    you choose. Compute zeta with this function in all passes. Its range is the same for the whole frame: \
+    bounding boxes of the transparent objects in view span, clipped to the camera's. The tighter the range, the less errs. \
+    Compute zeta with this function in all passes. Its range is the same for the whole frame: \
     peelnet_zeta_in(z, peelnet_range(near, far)) is the same value, and the range may be passed in."
     };
 }
@@ -248,7 +250,7 @@ pub(super) const QUANTILES: SmallTexture = SmallTexture {
         ],
     ),
     sum: "peelnet_tile_seen(mat4x4f(bins_a, bins_b, bins_c, vec4f(bins_d, bins_e)), tile_nearest)",
-    last: "",
+    last: None,
     write: "peelnet_quantiles(sum)",
     otherwise: "peelnet_even()",
 };

@@ -251,7 +251,7 @@ mod tests {
                 layout.unwrap_or("large")
             }
             "methods::one" if features.contains(&"wide") => "one-wide",
-            "methods::one" => "one",
+            "methods::one" | "passes::tiles" => "one",
             _ if features.contains(&"separate_ends") => "anchored-medium",
             _ => "anchored-small",
         };
