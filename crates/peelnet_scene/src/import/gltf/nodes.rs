@@ -54,7 +54,7 @@ fn size(mesh: &gltf::Mesh<'_>) -> [u64; 3] {
         // Without normals, every triangle gets vertices of its own.
         let vertices = match primitive.get(&Semantic::Normals) {
             Some(normals) if normals.count() as u64 == vertices => vertices,
-            _ => triangles.saturating_mul(3),
+            _ => vertices.max(triangles.saturating_mul(3)),
         };
         let own = [1, triangles, vertices];
         sum(all, own)
