@@ -235,14 +235,14 @@ pub fn recommend<'py>(
             measured(py, scenes, &compared, plan, adapter, progress)?.rows
         }
     };
-    let (found, warning) = points_for(&rows, &scene);
-    warning.iter().try_for_each(|text| warn(py, text))?;
+    let found = points_for(&rows, &scene);
+    found.warning.iter().try_for_each(|text| warn(py, text))?;
     let budget = Budget {
         ms: budget_ms,
         error: max_error,
         bytes: max_bytes,
     };
-    let chosen = budget.choose(&found).map_err(failed)?;
+    let chosen = budget.choose(&found.points).map_err(failed)?;
     Ok(Recommendation {
         best: chosen.best.into(),
         runner_up: chosen.runner_up.map(Choice::from),

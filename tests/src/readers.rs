@@ -3,7 +3,7 @@
 //! file does not warrant.
 
 use peelnet_bench::{bench::Bench, report::Results};
-use peelnet_dataset::{Dataset, Format};
+use peelnet_dataset::{Dataset, Format, Manifest, sha256};
 use peelnet_model::Model;
 use peelnet_peel::{ExtractOptions, synthetic::synthetic};
 use peelnet_scene::Scene;
@@ -154,10 +154,19 @@ fn dataset(bytes: &[u8]) {
     let (name, sound) = &files[usize::from(which / 3) % files.len()];
     let (_, manifest) = &files[0];
     let write = |name: &str, bytes: &[u8]| fs::write(folder.join(name), bytes).expect("writes");
-    // So that the length fits, and the contents are looked at.
-    let [from, to] = [sound.len(), contents.len()].map(|n| format!("\"bytes\": {n}"));
-    let adapted = String::from_utf8_lossy(manifest).replace(&from, &to);
-    write(MANIFEST, adapted.as_bytes());
+    // So that length and hashes fit, and the contents are looked at.
+    let mut adapted: Manifest = serde_json::from_slice(manifest).expect("is a manifest");
+    let mut lines = String::new();
+    for part in &mut adapted.parts {
+        for file in &mut part.files {
+            if file.name == *name {
+                (file.bytes, file.sha256) = (contents.len() as u64, sha256(contents));
+            }
+            lines += &format!("{} {}\n", part.index, file.sha256);
+        }
+    }
+    adapted.hash = sha256(lines.as_bytes());
+    write(MANIFEST, &serde_json::to_vec(&adapted).expect("serialises"));
     write(name, contents);
     if let Ok(dataset) = Dataset::open(folder) {
         // Either all rows are read, or an error ends them.

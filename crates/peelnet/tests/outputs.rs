@@ -137,6 +137,32 @@ fn a_folder_of_results_is_of_one_run() {
     }
 }
 
+/// Pictures beside the rows of an interrupted bench are those rows'.
+#[test]
+fn an_interrupted_bench_keeps_its_folder() {
+    let folder = Folder::new(&[("o/partial.json", "{\"sha256\":\"")]);
+    let said = folder.says("bench path cups --size 8x8 --frames 2 --out o", 1);
+    assert!(
+        said.contains("partial.json in it is of another command"),
+        "{said}"
+    );
+}
+
+/// What peeling left out is lacking in what is learnt.
+#[test]
+fn a_training_says_what_its_dataset_lacks() {
+    let folder = Folder::new(&[]);
+    folder.prints("extract cups --size 64x48 --views 1 --peel single --max-passes 2 --out d -q");
+    let said = folder.says(
+        "train d --recipe thesis --epochs 1 --out m.safetensors -q",
+        0,
+    );
+    assert!(
+        said.contains("d lacks ") && said.contains(" fragments"),
+        "{said}"
+    );
+}
+
 /// The curve beside an older model stays that model's.
 #[cfg(unix)]
 #[test]

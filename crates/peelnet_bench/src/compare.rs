@@ -102,6 +102,11 @@ pub fn image_name(scene: &str, method: &str) -> String {
         Some(before) => format!("{before}_2ddeep"),
         None => scene,
     };
+    // Files whose names begin with a point are hidden.
+    let scene = match scene.strip_prefix('.') {
+        Some(rest) => format!("_2e{rest}"),
+        None => scene,
+    };
     format!("{scene}-{}.png", plain(method))
 }
 
@@ -400,6 +405,7 @@ mod tests {
         for scene in &scenes {
             for method in &methods {
                 let name = image_name(scene, &method.to_string()).to_lowercase();
+                assert!(!name.starts_with('.'));
                 assert!(name.len() < 255 && !name.contains(['/', '\\', ':']));
                 names.insert(name);
             }

@@ -25,8 +25,8 @@ pub struct Point {
     pub method: String,
     /// Mean or largest of `mse_linear`, at least [`EXACT_MSE`].
     pub error: f64,
-    /// Geometric mean of the frame time as a ratio to [`BASE`]'s; milliseconds where that was not drawn.
-    pub time: f64,
+    /// Geometric mean of the frame time as a ratio to [`BASE`]'s; `None` where that was not drawn.
+    pub time: Option<f64>,
     pub time_ms: f64,
     pub bytes: Bytes,
     /// Whether no other method is both faster and at least as accurate.
@@ -50,6 +50,13 @@ impl Point {
         format!("MSE {:.2e}", self.error)
     }
 
+    pub fn time_text(&self) -> String {
+        match self.time {
+            Some(ratio) => format!("{ratio:.2} x hardware blending"),
+            None => format!("{:.2} ms", self.time_ms),
+        }
+    }
+
     /// Its error without the floor: 0 where it is exact.
     pub fn mse(&self) -> f64 {
         if self.is_exact() { 0.0 } else { self.error }
@@ -65,13 +72,15 @@ pub fn untimed<'a>(rows: &Rows<'a>) -> Vec<(&'a str, &'static str)> {
     methods.filter_map(|m| Some((m, why(m)?))).collect()
 }
 
-/// The points of rows, by time; times are geometric means, or those of the slowest view. Methods without a time are left out.
+/// The points of rows, by time, over the views that all methods have; times are geometric means, or those of the slowest view. Methods
+/// without a time are left out.
 pub fn points(rows: &Rows<'_>, kind: Mean) -> Vec<Point> {
+    let rows = rows.common();
     let time = |of: &Rows<'_>| match kind {
         Mean::Worst => of.0.iter().filter_map(|r| r.time_ms).reduce(f64::max),
         Mean::Geometric | Mean::Arithmetic => of.time_ms(),
     };
-    let base = time(&rows.of_method(BASE)).unwrap_or(1.0);
+    let base = time(&rows.of_method(BASE));
     let point = |method: &str| {
         let own = rows.of_method(method);
         let time_ms = time(&own)?;
@@ -82,7 +91,7 @@ pub fn points(rows: &Rows<'_>, kind: Mean) -> Vec<Point> {
                 Mean::Arithmetic => mean(own.errors())?,
                 Mean::Worst => own.errors().reduce(f64::max)?,
             },
-            time: time_ms / base,
+            time: base.map(|base| time_ms / base),
             time_ms,
             bytes: own.bytes().unwrap_or_default(),
             on_front: false,
@@ -91,7 +100,11 @@ pub fn points(rows: &Rows<'_>, kind: Mean) -> Vec<Point> {
         })
     };
     let mut points: Vec<Point> = rows.methods().into_iter().filter_map(point).collect();
-    mark_front(&mut points, |p| [p.time, p.error], |p, on| p.on_front = on);
+    mark_front(
+        &mut points,
+        |p| [p.time_ms, p.error],
+        |p, on| p.on_front = on,
+    );
     measure_against_front(&mut points);
     points
 }
@@ -100,7 +113,7 @@ pub fn points(rows: &Rows<'_>, kind: Mean) -> Vec<Point> {
 /// method errs half as an exact one does: between the last point with an error and the exact one the front stays at that error.
 fn measure_against_front(points: &mut [Point]) {
     // By time, and so from the largest error to the smallest.
-    let logarithms = |p: &Point| [p.time.ln(), p.error.ln()];
+    let logarithms = |p: &Point| [p.time_ms.ln(), p.error.ln()];
     let front = points.iter().filter(|p| p.on_front);
     let front: Vec<[f64; 2]> = front.map(logarithms).collect();
     for p in points.iter_mut().filter(|p| !p.on_front) {
@@ -178,7 +191,8 @@ mod tests {
             }
             let on_front = [BASE, "middle", "last", "exact"].contains(&method);
             assert_eq!((p.on_front, p.is_exact()), (on_front, mse == 0.0));
-            assert!((p.time / ms - 1.0).abs() < 1e-12 && (p.time_ms / ms - 3.0).abs() < 1e-12);
+            let time = p.time.unwrap();
+            assert!((time / ms - 1.0).abs() < 1e-12 && (p.time_ms / ms - 3.0).abs() < 1e-12);
         }
     }
 

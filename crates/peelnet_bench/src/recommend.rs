@@ -5,9 +5,10 @@ use peelnet_scene::Scene;
 
 use crate::{
     Row,
-    front::{Mean, Point, points},
+    front::{self, Mean, Point},
     rows::Rows,
 };
+use std::collections::BTreeSet;
 
 /// What must hold; `None` sets no bound.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -27,9 +28,19 @@ pub struct Recommendation<'a> {
     pub why: String,
 }
 
-/// The points of a scene among the rows, of its worst view; where it is not among them those over all scenes, and a warning that says so. Methods
-/// that cannot draw it are left out.
-pub fn points_for(rows: &[Row], scene: &Scene) -> (Vec<Point>, Option<String>) {
+/// What a method is chosen from.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Candidates {
+    pub points: Vec<Point>,
+    /// Whether they were measured with the scene itself.
+    pub of_scene: bool,
+    /// What their figures are not.
+    pub warning: Option<String>,
+}
+
+/// The points of a scene among the rows, of its worst view; where it is not among them those over all scenes. Methods that cannot draw it,
+/// or lack a view that others have, are left out.
+pub fn points_for(rows: &[Row], scene: &Scene) -> Candidates {
     let draws = |row: &&Row| {
         let spec = row.method.parse::<MethodSpec>();
         spec.is_ok_and(|spec| spec.check_scene(scene).is_ok())
@@ -38,17 +49,41 @@ pub fn points_for(rows: &[Row], scene: &Scene) -> (Vec<Point>, Option<String>) {
     // Rows of before there was a hash, and scenes that are built in code, have none.
     let is_own = |row: &&Row| row.scene_content == scene.content && !scene.content.is_empty();
     let own: Vec<Row> = rows.iter().filter(is_own).cloned().collect();
-    let own = points(&Rows::new(&own), Mean::Worst);
-    if !own.is_empty() {
-        return (own, None);
+    let views = own
+        .iter()
+        .map(|row| row.view)
+        .collect::<BTreeSet<_>>()
+        .len();
+    let views_of = |method: &str| own.iter().filter(|row| row.method == method).count();
+    let whole = own.iter().filter(|row| views_of(&row.method) == views);
+    let whole: Vec<Row> = whole.cloned().collect();
+    let points = front::points(&Rows::new(&whole), Mean::Worst);
+    if !points.is_empty() {
+        let all = scene.views.len();
+        let warning = (views < all).then(|| {
+            format!("only {views} of the scene's {all} views were measured: another may be slower, and its error larger")
+        });
+        return Candidates {
+            points,
+            of_scene: true,
+            warning,
+        };
     }
     let name = &scene.name;
     let which = match rows.iter().any(|row| row.scene == *name) {
         true => format!("the results do not show that their scene '{name}' is this one"),
         false => format!("scene '{name}' is not among the results"),
     };
-    let warning = format!("{which}: judged by the geometric means over all scenes of them");
-    (points(&Rows::new(rows), Mean::Geometric), Some(warning))
+    let rows = Rows::new(rows);
+    let note = rows
+        .note()
+        .map_or_else(String::new, |note| format!(". {note}"));
+    let warning = format!("{which}: judged by the geometric means over all scenes of them{note}");
+    Candidates {
+        points: front::points(&rows, Mean::Geometric),
+        of_scene: false,
+        warning: Some(warning),
+    }
 }
 
 impl Budget {
@@ -143,7 +178,36 @@ impl Budget {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rows::Bytes;
+    use crate::rows::{Bytes, tests::row};
+    use peelnet_render::role;
+
+    /// A view that was not measured is said to be missing; a method without one that others have is no candidate.
+    #[test]
+    fn views_that_are_missing_are_no_candidates() {
+        let shipped = peelnet_scene::suite::find("cups").unwrap();
+        let mut scene = peelnet_scene::suite::load_file(shipped, None).unwrap();
+        scene.views.truncate(2);
+        let of_view = |view, method| Row {
+            view,
+            time_ms: Some(1.0),
+            scene_content: scene.content.clone(),
+            ..row(&scene.name, method, 1.0)
+        };
+        let (whole, half) = (role::WEIGHTED_BLENDING, role::MOMENT_BLENDING);
+        let mut rows = vec![of_view(0, whole), of_view(0, half)];
+        let found = points_for(&rows, &scene);
+        assert_eq!((found.points.len(), found.of_scene), (2, true));
+        assert!(
+            found
+                .warning
+                .unwrap()
+                .contains("only 1 of the scene's 2 views")
+        );
+        rows.push(of_view(1, whole));
+        let found = points_for(&rows, &scene);
+        assert_eq!((found.points.len(), found.warning), (1, None));
+        assert_eq!(found.points[0].method, whole);
+    }
 
     /// Without a bound the most accurate, with an error the fastest; where nothing is within the budget, the nearest is named.
     #[test]

@@ -39,6 +39,18 @@ pub fn each_once<'a>(names: impl IntoIterator<Item = &'a str>) -> Vec<&'a str> {
     found
 }
 
+/// The places, scenes or views of them, of which all methods have rows: means over others would not compare.
+pub fn shared<'a, P: Ord>(rows: impl IntoIterator<Item = (&'a str, P)>) -> BTreeSet<P> {
+    let mut methods = BTreeSet::new();
+    let mut places: BTreeMap<P, BTreeSet<&str>> = BTreeMap::new();
+    for (method, place) in rows {
+        methods.insert(method);
+        places.entry(place).or_default().insert(method);
+    }
+    let of_all = |(place, own): (P, BTreeSet<_>)| (own.len() == methods.len()).then_some(place);
+    places.into_iter().filter_map(of_all).collect()
+}
+
 /// Bytes a pixel over several views: those of methods that store fragments differ from view to view.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Bytes {
@@ -70,10 +82,14 @@ pub struct Rows<'a>(pub Vec<&'a Row>, Judged<'a>);
 /// Scenes and views in which a method errs. Where none does, as of one layer, an error of 0 would take any mean of ratios down.
 type Judged<'a> = Arc<BTreeSet<(&'a str, u32)>>;
 
+fn place(row: &Row) -> (&str, u32) {
+    (&row.scene, row.view)
+}
+
 impl<'a> Rows<'a> {
     pub fn new(rows: &'a [Row]) -> Self {
         let err = rows.iter().filter(|r| r.mse_linear > EXACT_MSE);
-        let judged = err.map(|r| (r.scene.as_str(), r.view)).collect();
+        let judged = err.map(place).collect();
         Self(rows.iter().collect(), Arc::new(judged))
     }
 
@@ -82,10 +98,33 @@ impl<'a> Rows<'a> {
         Self(kept, Arc::clone(&self.1))
     }
 
+    /// The rows of the views that all methods have.
+    pub fn common(&self) -> Self {
+        let places = self.0.iter().map(|r| (r.method.as_str(), place(r)));
+        let shared = shared(places);
+        self.filter(|r| shared.contains(&place(r)))
+    }
+
+    /// A sentence where [`Rows::common`] leaves views out.
+    pub fn note(&self) -> Option<String> {
+        let views = |rows: &Self| {
+            rows.0
+                .iter()
+                .map(|r| place(r))
+                .collect::<BTreeSet<_>>()
+                .len()
+        };
+        let [shared, all] = [views(&self.common()), views(self)];
+        (shared < all).then(|| {
+            format!(
+                "Means are over {shared} of {all} views: some method was left out of the others."
+            )
+        })
+    }
+
     /// Errors that count, each at least [`EXACT_MSE`].
     pub fn errors(&self) -> impl Iterator<Item = f64> {
-        let is_judged =
-            |r: &&&Row| self.1.is_empty() || self.1.contains(&(r.scene.as_str(), r.view));
+        let is_judged = |r: &&&Row| self.1.is_empty() || self.1.contains(&place(r));
         let judged = self.0.iter().filter(is_judged);
         judged.map(|r| r.mse_linear.max(EXACT_MSE))
     }
@@ -124,16 +163,19 @@ impl<'a> Rows<'a> {
         geometric_mean(self.errors())
     }
 
-    /// The error of a method; `None` of an exact one.
+    /// The error of a method; 0 of an exact one.
     pub fn error_of(&self, method: &str) -> Option<f64> {
         let own = self.of_method(method);
-        let exact = own.0.iter().all(|r| r.mse_linear <= EXACT_MSE);
-        own.error().filter(|_| !exact)
+        if own.0.iter().any(|r| r.mse_linear > EXACT_MSE) {
+            return own.error();
+        }
+        (!own.0.is_empty()).then_some(0.0)
     }
 
     /// The error of a method as a ratio to that of another; `None` of an exact one.
     pub fn error_ratio(&self, method: &str, reference: &str) -> Option<f64> {
-        Some(self.error_of(method)? / self.of_method(reference).error()?)
+        let error = self.error_of(method).filter(|e| *e > 0.0)?;
+        Some(error / self.of_method(reference).error()?)
     }
 
     pub fn time_ratio(&self, method: &str, reference: &str) -> Option<f64> {
@@ -219,6 +261,39 @@ pub(crate) mod tests {
         assert!(close(all.time_ratio("x", MOMENTS), 1.5));
         assert!(close(all.time_ratio("x", WEIGHTED), 3.0));
         assert_eq!(all.time_ratio("x", BASE), None);
+    }
+
+    /// Of a scene that one method lacks no mean knows: neither errors nor times of other scenes are compared.
+    #[test]
+    fn means_are_over_the_views_that_all_methods_have() {
+        let mut rows = Vec::new();
+        for (scene, method, mse, ms) in [
+            ("a", BASE, 8.0, 1.0),
+            ("a", MOMENTS, 4.0, 2.0),
+            ("a", "x", 8.0, 3.0),
+            ("tinted", MOMENTS, 100.0, 0.1),
+            ("tinted", "x", 1.0, 0.1),
+        ] {
+            rows.push(Row {
+                time_ms: Some(ms),
+                ..row(scene, method, mse)
+            });
+        }
+        let all = Rows::new(&rows);
+        assert!(all.note().unwrap().contains("1 of 2 views"));
+        let common = all.common();
+        assert_eq!((common.scenes(), common.note()), (vec!["a"], None));
+        for p in crate::front::points(&all, crate::front::Mean::Geometric) {
+            assert_eq!(p.time, Some(p.time_ms), "{p:?}");
+            let ratio = common.error_ratio(&p.method, MOMENTS).unwrap();
+            assert!((p.error * 65025.0 - 4.0 * ratio).abs() < 1e-9, "{p:?}");
+        }
+        // Without hardware blending there is no ratio to it.
+        let others = all.filter(|r| r.method != BASE);
+        let points = crate::front::points(&others, crate::front::Mean::Geometric);
+        assert!(points.len() == 2 && points.iter().all(|p| p.time.is_none()));
+        let text = points[0].time_text();
+        assert!(text.ends_with(" ms"), "{text}");
     }
 
     /// A view that all methods draw exactly takes no mean of errors down.

@@ -84,6 +84,22 @@ impl Mesh {
         }));
     }
 
+    /// The same triangles, each with vertices and a normal of its own.
+    pub(crate) fn flat(self) -> Self {
+        let corners = || self.triangles.as_flattened().iter().map(|&i| i as usize);
+        let normal = |t: &[u32; 3]| area_of(&self.positions, *t).normalize_or(Vec3::Z);
+        let numbers = 0..self.triangles.len() as u32;
+        Self {
+            positions: corners().map(|i| self.positions[i]).collect(),
+            normals: self.triangles.iter().flat_map(|t| [normal(t); 3]).collect(),
+            colors: corners()
+                .filter_map(|i| self.colors.get(i).copied())
+                .collect(),
+            triangles: numbers.map(|i| [0, 1, 2].map(|k| 3 * i + k)).collect(),
+            ..self
+        }
+    }
+
     /// Drops the vertices that no triangle uses.
     pub(crate) fn keep_used(&mut self) {
         let mut numbers = vec![None; self.positions.len()];

@@ -149,16 +149,27 @@ impl Scene {
         })
     }
 
-    /// The same scene with all of its lengths multiplied, the planes of its cameras too.
+    /// Whether some surface is lit in this way.
+    pub(crate) fn has_lighting(&self, lighting: Lighting) -> bool {
+        let mut materials = self.objects.iter().flat_map(|o| &o.materials);
+        materials.any(|m| m.lighting == lighting)
+    }
+
+    /// The same scene with all of its lengths multiplied, the planes of its cameras too. Where surfaces are physically based, points of
+    /// light are so much brighter that as much arrives; where others are Phong, these are too bright then.
     pub fn scaled(&self, factor: f32) -> Self {
         let mut scene = self.clone();
         let scaling = Mat4::from_scale(Vec3::splat(factor));
+        let falls_off = self.has_lighting(Lighting::Pbr);
         for object in &mut scene.objects {
             object.world_from_object = scaling * object.world_from_object;
         }
         for light in &mut scene.lights {
             if let Source::Point(position) = &mut light.source {
                 *position *= factor;
+                if falls_off {
+                    light.intensity = (light.intensity * factor * factor).min(f32::MAX);
+                }
             }
         }
         for view in &mut scene.views {

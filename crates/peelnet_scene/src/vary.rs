@@ -1,6 +1,9 @@
 //! Variations of a scene, for training: the same geometry with other colours, opacities, cameras and scales.
 
-use crate::scene::{Object, Scene};
+use crate::{
+    material::Lighting,
+    scene::{Object, Scene},
+};
 use glam::{Quat, Vec3};
 use peelnet_core::random::Random;
 
@@ -31,6 +34,11 @@ impl Scene {
         vary_materials(&mut scene, &mut random);
         vary_cameras(&mut scene, &mut random);
         let exponent = random.between(-2.0, 2.0);
+        // No light suits both at another scale: light that falls off with the distance, and light that does not.
+        let [phong, pbr] = [Lighting::Phong, Lighting::Pbr].map(|l| scene.has_lighting(l));
+        if phong && pbr {
+            return scene;
+        }
         scene.scaled(10f32.powf(exponent))
     }
 }
@@ -53,7 +61,9 @@ fn vary_materials(scene: &mut Scene, random: &mut Random) {
             if material.is_opaque() {
                 continue;
             }
-            material.alpha = scheme(u, same, bands[usize::from(distance > middle)]);
+            let alpha = scheme(u, same, bands[usize::from(distance > middle)]);
+            material.alpha_cutoff = material.cutoff_at(alpha);
+            material.alpha = alpha;
             material.blend = true;
         }
     }
@@ -77,5 +87,68 @@ fn vary_cameras(scene: &mut Scene, random: &mut Random) {
         view.position = turned.target + offset * distance;
         view.far *= distance.max(1.0);
         view.fov_y_degrees = (view.fov_y_degrees * fov).clamp(5.0, 120.0);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        material::Material,
+        scene::{Light, Source},
+    };
+
+    fn scene(materials: &[Material]) -> Scene {
+        let mut scene = crate::suite::load("cups").unwrap();
+        scene.objects.truncate(materials.len());
+        for (object, material) in scene.objects.iter_mut().zip(materials) {
+            object.materials.fill(material.clone());
+        }
+        scene.lights = vec![Light {
+            source: Source::Point(Vec3::new(1.0, 2.0, 3.0)),
+            color: [1.0; 3],
+            intensity: 5.0,
+        }];
+        scene
+    }
+
+    /// What falls off with the square of the distance arrives as bright at every scale; so does what does not fall off.
+    #[test]
+    fn light_is_as_bright_at_every_scale() {
+        let [phong, pbr] = [Lighting::Phong, Lighting::Pbr].map(Material::default_with);
+        let place = |scene: &Scene| match scene.lights[0].source {
+            Source::Point(place) => place.length(),
+            Source::Toward(_) => unreachable!("the light is a point"),
+        };
+        for copy in 1..9 {
+            for (materials, power) in [(vec![phong.clone()], 0), (vec![pbr.clone()], 2)] {
+                let scene = scene(&materials);
+                let copy = scene.varied(1, copy);
+                let factor = place(&copy) / place(&scene);
+                let arriving = copy.lights[0].intensity / factor.powi(power);
+                assert!((arriving / 5.0 - 1.0).abs() < 1e-4, "{factor}: {arriving}");
+            }
+            let both = scene(&[phong.clone(), pbr.clone()]);
+            assert_eq!(both.varied(1, copy).lights, both.lights);
+        }
+    }
+
+    /// A cut-out that is thinned keeps its holes, and gets no others.
+    #[test]
+    fn cut_outs_keep_their_holes() {
+        let material = Material {
+            alpha_cutoff: Some(0.25),
+            blend: true,
+            ..Material::unlit([1.0; 3], 0.5)
+        };
+        for copy in 1..9 {
+            let copy = scene(std::slice::from_ref(&material)).varied(1, copy);
+            let Material {
+                alpha,
+                alpha_cutoff,
+                ..
+            } = copy.objects[0].materials[0];
+            assert!((alpha_cutoff.unwrap() / alpha - 0.5).abs() < 1e-6);
+        }
     }
 }

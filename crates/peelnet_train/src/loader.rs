@@ -256,6 +256,7 @@ fn check_contents(datasets: &[Dataset]) -> Result<(), TrainError> {
         }
     }
     let mut names: BTreeMap<&str, &SceneEntry> = BTreeMap::new();
+    let mut contents: BTreeMap<&str, &SceneEntry> = BTreeMap::new();
     let scenes = datasets.iter().flat_map(|d| &d.manifest().scenes);
     for scene in scenes.filter(|scene| !scene.content.is_empty()) {
         let first = *names.entry(&scene.content).or_insert(scene);
@@ -263,6 +264,13 @@ fn check_contents(datasets: &[Dataset]) -> Result<(), TrainError> {
             return Err(TrainError::Failed(format!(
                 "scenes '{}' ({}) and '{}' ({}) show the same, and what is trained on may not judge the network; leave one out",
                 first.name, first.file, scene.name, scene.file
+            )));
+        }
+        let first = *contents.entry(&scene.name).or_insert(scene);
+        if first.content != scene.content {
+            return Err(TrainError::Failed(format!(
+                "scenes of {} and {} are both named '{}' and show different things; rename one, because what is trained on and held out is known by name",
+                first.file, scene.file, scene.name
             )));
         }
     }

@@ -277,11 +277,17 @@ impl TrainingData {
     }
 
     /// Identifies the rows, so that a checkpoint is continued with the same ones: a 64-bit hash over the bits of every value, or that of the
-    /// dataset.
+    /// dataset, which does not know what is held out, with the scenes that are not.
     pub(crate) fn fingerprint(&self) -> String {
         if self.scratch.is_some() {
-            let hash = self.dataset.as_ref().map(|dataset| &*dataset.hash);
-            return format!("dataset {}", hash.unwrap_or_default());
+            let dataset = self.dataset.iter();
+            let known = dataset.map(|d| {
+                format!(
+                    "{}, {} rows of {:?} and {:?}",
+                    d.hash, d.rows, d.scenes, d.set_aside
+                )
+            });
+            return format!("dataset {}", known.collect::<String>());
         }
         let columns = self.inputs.iter().chain(&self.targets).chain(&self.weights);
         let words = columns.flat_map(|column| {

@@ -15,6 +15,7 @@ use peelnet_bench::{
     effects::{self, Effects},
     json_hash,
     path::{self, Along},
+    rows::Rows,
     scaling::{self, Scaling},
 };
 use peelnet_core::files::{error_line, shown};
@@ -76,6 +77,8 @@ fn redraw(context: &Context<'_>, out: &Path) -> Result<(), Failure> {
 
 fn print(context: &Context<'_>, results: &Results<Bench>) -> Result<(), Failure> {
     let console = context.console;
+    let note = Rows::new(&results.measured.rows).note();
+    note.iter().for_each(|note| console.warn(note));
     console.result(|| results.table().plain(), || json!(results))
 }
 
@@ -168,7 +171,10 @@ fn along_path(context: &Context<'_>, args: &PathArgs) -> Result<(), Failure> {
         path::measure(&gpu, &scenes, &plan, context.stop, show)?
     };
     context.warn_of_memory(&gpu);
-    report(context, &gpu, out, found, |r| r.table().plain())
+    report(context, &gpu, out, found, |r| {
+        r.note().iter().for_each(|note| context.console.warn(note));
+        r.table().plain()
+    })
 }
 
 /// Compares methods on scenes: those named, or all, with these model files. `out` is where pictures and the rows of finished views go, and

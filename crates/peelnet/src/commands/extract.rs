@@ -170,6 +170,15 @@ pub(super) fn warn_of_empty(context: &Context<'_>, report: &ExtractReport) {
             few(&empty, 6)
         ));
     }
+    let copies = m.parts.iter().filter(|p| p.copy > 0 && p.rows == 0);
+    let of_seen = copies.filter(|p| rows.get(&*m.scenes[p.scene as usize].name) != Some(&0));
+    let number = of_seen.count() as u64;
+    if number > 0 {
+        context.console.warn(format!(
+            "no rows in {} of varied copies: nothing transparent is seen there",
+            counted(number, "view")
+        ));
+    }
 }
 
 pub(super) fn text(folder: &Path, report: &ExtractReport) -> String {

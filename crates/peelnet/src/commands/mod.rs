@@ -15,6 +15,7 @@ use crate::console::Console;
 use crate::interrupt;
 use crate::progress::Bar;
 use peelnet::{Failure, model_for, weight_of};
+use peelnet_bench::Partial;
 use peelnet_bench::compare::EXACT;
 use peelnet_bench::report::{Measurement, Results, kind_of};
 use peelnet_core::files::{Outputs, error_line, printable, shown};
@@ -65,9 +66,13 @@ impl Context<'_> {
         // What only one of those that write a report.html writes. A model of a run must not lie beside the report of another command.
         let is_run = own.contains(&"results.json") && !own.contains(&"results.csv");
         let run = (!is_run).then_some("dataset-summary.json");
+        let bench = (!own.contains(&"results.csv")).then_some(Partial::FILE);
         let marks = ["results.csv", "effects.json", "path.json"].into_iter();
         let is_other = |mark: &&str| !own.contains(mark) && out.join(mark).exists();
-        let mut marks = marks.chain(run).filter(|_| own.contains(&"report.html"));
+        let mut marks = marks
+            .chain(run)
+            .chain(bench)
+            .filter(|_| own.contains(&"report.html"));
         if let Some(mark) = marks.find(is_other).filter(|_| !self.global.force) {
             return Err(Failure::failed(format!(
                 "--out {}: {mark} in it is of another command, whose report.html would be replaced; choose another folder, or replace it with --force",

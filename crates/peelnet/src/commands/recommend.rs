@@ -3,8 +3,8 @@ use crate::cli::RecommendArgs;
 use peelnet::Failure;
 use peelnet_bench::{
     compare::Plan,
-    front::{BASE, Point, untimed},
-    recommend::{Budget, points_for},
+    front::{Point, untimed},
+    recommend::{Budget, Candidates, points_for},
     rows::Rows,
 };
 use serde_json::json;
@@ -24,13 +24,15 @@ pub(super) fn run(context: &Context<'_>, args: &RecommendArgs) -> Result<(), Fai
     };
     bench::warn_of_opaque(context, &results);
     let rows = &results.measured.rows;
-    let (points, warning) = points_for(rows, &scene);
-    let from = match warning {
-        Some(text) => {
-            context.console.warn(text);
-            "all scenes of the results"
-        }
-        None => "this scene",
+    let Candidates {
+        points,
+        of_scene,
+        warning,
+    } = points_for(rows, &scene);
+    warning.iter().for_each(|text| context.console.warn(text));
+    let from = match of_scene {
+        true => "this scene",
+        false => "all scenes of the results",
     };
     let budget = Budget {
         ms: args.budget_ms,
@@ -40,14 +42,15 @@ pub(super) fn run(context: &Context<'_>, args: &RecommendArgs) -> Result<(), Fai
     let chosen = budget.choose(&points).map_err(Failure::failed)?;
     let untimed = untimed(&Rows::new(rows));
     let adapter = &results.machine.adapter;
-    let has_base = points.iter().any(|point| point.method == BASE);
+    // A point is of a row, and all rows are of one size.
+    let (size, samples) = (rows.first()).map_or(([0; 2], 0), |r| ([r.width, r.height], r.samples));
     let line = |p: &Point| {
-        let ratio = format!(" ({:.2} x hardware blending)", p.time);
+        let ratio = p.time.map(|_| format!(" ({})", p.time_text()));
         format!(
             "{}: {:.2} ms{}, {}, {:.0} bytes a pixel",
             p.method,
             p.time_ms,
-            if has_base { &ratio } else { "" },
+            ratio.unwrap_or_default(),
             p.error_text(),
             p.bytes.most
         )
@@ -60,7 +63,11 @@ pub(super) fn run(context: &Context<'_>, args: &RecommendArgs) -> Result<(), Fai
         for (method, why) in &untimed {
             text.push_str(&format!("{method} is not among them: {why}\n"));
         }
-        text + &format!("measured on {adapter} with {from}\n")
+        let [width, height] = size;
+        text + &format!(
+            "measured on {adapter} with {from}, at {width}x{height} with {samples} sample{} a pixel\n",
+            if samples == 1 { "" } else { "s" }
+        )
     };
     let point = |p: &Point| json!({"method": p.method, "time_ms": p.time_ms, "mse_linear": p.mse(), "bytes_per_pixel": p.bytes.most});
     let left_out = untimed
@@ -74,6 +81,8 @@ pub(super) fn run(context: &Context<'_>, args: &RecommendArgs) -> Result<(), Fai
             "why": chosen.why,
             "without_time": left_out.collect::<Vec<_>>(),
             "adapter": adapter,
+            "size": size,
+            "samples": samples,
         })
     })
 }

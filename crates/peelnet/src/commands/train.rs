@@ -99,6 +99,16 @@ pub(super) fn fit(
     continues: Continues,
 ) -> Result<Outcome, Failure> {
     let console = context.console;
+    for dataset in datasets {
+        let lost = dataset.manifest().lost_fragments;
+        if lost > 0 {
+            console.warn(format!(
+                "{} lacks {} that peeling left out: what is learnt from its rows is of stacks that were cut off; extract it again with more passes",
+                shown(dataset.path()),
+                counted(lost, "fragment")
+            ));
+        }
+    }
     let rows = datasets.iter().map(Dataset::rows).sum();
     let read = || Bar::new(console, "read", rows);
     let mut bar = config.buffer_rows.is_some().then(read);

@@ -2,7 +2,7 @@
 
 use crate::{
     chart::{Area, DRAWN, SIZE, Svg, name, range, width},
-    front::{BASE, EXACT_MSE, Point},
+    front::{EXACT_MSE, Point},
 };
 use maud::{Markup, html};
 use peelnet_core::files::one_line;
@@ -15,18 +15,23 @@ fn radius(p: &Point) -> f64 {
 /// Shown where the pointer is over a bubble.
 fn title(p: &Point) -> String {
     let (error, bytes) = (p.error_text(), p.bytes.text());
-    let (method, time) = (&p.method, p.time);
-    format!("{method}: {error}, {time:.2} x hardware blending, {bytes} bytes a pixel")
+    let (method, time) = (&p.method, p.time_text());
+    format!("{method}: {error}, {time}, {bytes} bytes a pixel")
+}
+
+/// A ratio to [hardware blending](crate::front::BASE), or milliseconds where no point has one.
+fn time(p: &Point) -> f64 {
+    p.time.unwrap_or(p.time_ms)
 }
 
 /// A bubble for each method, as large as its bytes per pixel; they come by time. Those whose time or error is outside of 1e-30 to 1e30 are
 /// left out.
 pub fn bubble_chart(points: &[Point]) -> Svg {
-    let is_shown = |p: &&Point| DRAWN.contains(&p.time) && DRAWN.contains(&p.error);
+    let is_shown = |p: &&Point| DRAWN.contains(&time(p)) && DRAWN.contains(&p.error);
     let points: &[Point] = &points.iter().filter(is_shown).cloned().collect::<Vec<_>>();
-    let (left, right) = range(points.iter().map(|p| p.time));
+    let (left, right) = range(points.iter().map(time));
     let (low, high) = range(points.iter().map(|p| p.error));
-    let x = match points.iter().any(|p| p.method == BASE) {
+    let x = match points.iter().any(|p| p.time.is_some()) {
         true => "time, times hardware blending without sorting",
         false => "time, milliseconds",
     };
@@ -57,14 +62,14 @@ pub fn bubble_chart(points: &[Point]) -> Svg {
         let mut stairs: Vec<(f64, f64)> = Vec::new();
         for p in points.iter().filter(|p| p.on_front) {
             if let Some(&(_, y)) = stairs.last() {
-                stairs.push((p.time, y));
+                stairs.push((time(p), y));
             }
-            stairs.push((p.time, p.error));
+            stairs.push((time(p), p.error));
         }
         let front = RGBColor(213, 94, 0).stroke_width(2);
         chart.draw_series(LineSeries::new(stairs, front))?;
         let placed = points.iter().map(|p| {
-            let (x, y) = chart.backend_coord(&(p.time, p.error));
+            let (x, y) = chart.backend_coord(&(time(p), p.error));
             (p, x, y)
         });
         Ok(overlay(placed.collect()))
@@ -126,7 +131,7 @@ mod tests {
     fn every_bubble_has_its_title() {
         let point = |method: &str, time, error, on_front| Point {
             method: method.to_owned(),
-            time,
+            time: Some(time),
             error,
             on_front,
             ..Point::default()

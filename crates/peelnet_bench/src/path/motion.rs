@@ -8,10 +8,10 @@ const ORBIT_DEGREES: f32 = 60.0;
 /// In the middle of the path the camera is nearer to its target by this share of its distance.
 const DOLLY: f32 = 0.2;
 
-/// Objects turn about their middle by up to this angle to both sides, degrees.
+/// Objects swing about their middle by this angle to both sides, degrees, and begin anywhere in it.
 const TURN_DEGREES: f32 = 8.0;
 
-/// Objects move by up to this share of the diagonal of their box to both sides.
+/// Objects swing by this share of the diagonal of their box to both sides.
 const SHIFT: f32 = 0.04;
 
 /// 360° (1 − 1/φ), radians: multiples of it are never near each other, so that neighbours in the list move differently.

@@ -17,7 +17,7 @@ use crate::{
     rows,
 };
 use maud::{Markup, html};
-use std::path::Path;
+use std::{collections::BTreeSet, path::Path};
 
 const STRIP_WIDTH: u32 = 1200;
 
@@ -45,17 +45,37 @@ impl Results<Along> {
         self.table_of(None)
     }
 
-    /// The lines of one scene, or means over all.
+    /// The scenes along which all methods were drawn.
+    fn shared(&self) -> BTreeSet<&str> {
+        let rows = self.measured.rows.iter();
+        rows::shared(rows.map(|r| (r.method.as_str(), r.scene.as_str())))
+    }
+
+    /// A sentence where means leave scenes out, because some method lacks them.
+    pub fn note(&self) -> Option<String> {
+        let all = each_once(self.measured.rows.iter().map(|r| r.scene.as_str())).len();
+        let shared = self.shared().len();
+        (shared < all).then(|| {
+            format!(
+                "Means are over {shared} of {all} scenes: some method was left out of the others."
+            )
+        })
+    }
+
+    /// The lines of one scene, or means over those that all methods have.
     fn table_of(&self, scene: Option<&str>) -> Table {
+        let shown = scene.map_or_else(|| self.shared(), |scene| BTreeSet::from([scene]));
         let rows = || {
             let all = self.measured.rows.iter();
-            all.filter(|r| scene.is_none_or(|s| r.scene == s))
+            all.filter(|r| shown.contains(r.scene.as_str()))
         };
         let mean = |method: &str, value: fn(&PathRow) -> Option<f64>| {
             let own = rows().filter(|r| r.method == method).map(value);
             rows::mean(own.collect::<Option<Vec<f64>>>()?)
         };
-        let mut methods = each_once(rows().map(|r| r.method.as_str()));
+        let all = self.measured.rows.iter();
+        let own = all.filter(|r| scene.is_none_or(|s| r.scene == s));
+        let mut methods = each_once(own.map(|r| r.method.as_str()));
         let jod = |m: &str| mean(m, |r| r.jod).unwrap_or(f64::NEG_INFINITY);
         methods.sort_by(|a, b| jod(b).total_cmp(&jod(a)));
         let worst = |m: &str| {
@@ -77,21 +97,23 @@ impl Results<Along> {
                 ("ꟻLIP", &|m| number(mean(m, |r| Some(r.flip)), 4)),
                 ("MSE (linear)", &|m| {
                     let mse = mean(m, |r| Some(r.mse_linear));
-                    format!("{:.2e}", mse.unwrap_or_default())
+                    mse.map_or_else(|| "–".to_owned(), |x| format!("{x:.2e}"))
                 }),
             ],
         )
     }
 
-    /// A value of every method against the number of the frame, means over the scenes; exact methods have no line.
+    /// A value of every method against the number of the frame, means over the scenes that all have; exact methods have no line.
     fn chart(&self, y: &str, value: fn(&FrameRow) -> Option<f64>) -> Svg {
         let is_exact = |method: &str| {
             let mut own = self.measured.rows.iter().filter(|r| r.method == method);
             own.all(|r| r.mse_linear <= EXACT_MSE)
         };
+        let shared = self.shared();
         let line = |method: &&str| {
             let points = (0..self.measured.frames).filter_map(|frame| {
                 let all = self.measured.by_frame.iter();
+                let all = all.filter(|r| shared.contains(r.scene.as_str()));
                 let own = all.filter(|r| r.method == *method && r.frame == frame);
                 Some((f64::from(frame), rows::mean(own.filter_map(value))?))
             });
@@ -115,7 +137,10 @@ impl Results<Along> {
 
     fn markdown(&self) -> String {
         let (table, settings) = (self.table().markdown(), self.settings());
-        format!("{table}\n{NOTE}\n\n{settings}. {}\n", self.credit())
+        let note = self
+            .note()
+            .map_or_else(String::new, |note| format!(" {note}"));
+        format!("{table}\n{NOTE}{note}\n\n{settings}. {}\n", self.credit())
     }
 
     fn settings(&self) -> String {
@@ -143,7 +168,7 @@ impl Results<Along> {
         let body = html! {
             p { "Scenes: " (scenes.len()) ". " (self.settings()) ". The camera moves on an arc, and every object swings." }
             h2 { "All scenes" }
-            p.note { (NOTE) }
+            p.note { (NOTE) @if let Some(note) = self.note() { " " (note) } }
             (self.table().html("sortable", |_| false))
             (page::chart("curve", &self.error_chart()))
             (page::chart("curve", &self.change_chart()))
@@ -210,7 +235,10 @@ mod tests {
             rows: vec![
                 row("wboit-eq9", "a", 8.0, 1e-3),
                 row("depth-peel", "a", 10.0, 0.0),
+                row("depth-peel", "<b>", 10.0, 0.0),
                 row("wboit-eq9", "<b>", 9.0, 1e-3),
+                // No mean is over a scene that the other lacks.
+                row("wboit-eq9", "tinted", 1.0, 1.0),
             ],
             by_frame: vec![
                 frame("wboit-eq9", "a", 0, 2.0),
@@ -226,8 +254,9 @@ mod tests {
         assert_eq!(table.rows[0][..2], ["depth-peel", "10.00"]);
         assert_eq!(table.rows[1][..2], ["wboit-eq9", "8.50"]);
         let one = results.table_of(Some("<b>"));
-        assert_eq!((one.rows.len(), one.rows[0][1].as_str()), (1, "9.00"));
-        assert_eq!([&table.rows[1][5], &one.rows[0][5]], ["0.00850", "0.00900"]);
+        assert_eq!((one.rows.len(), one.rows[1][1].as_str()), (2, "9.00"));
+        assert_eq!([&table.rows[1][5], &one.rows[1][5]], ["0.00850", "0.00900"]);
+        assert!(results.markdown().contains("2 of 3 scenes"));
         let folder = tempfile::tempdir().unwrap();
         let images = folder.path().join("images");
         std::fs::create_dir(&images).unwrap();

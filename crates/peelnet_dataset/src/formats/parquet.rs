@@ -21,7 +21,7 @@ use parquet::errors::ParquetError;
 use parquet::file::properties::{
     EnabledStatistics, WriterProperties, WriterPropertiesPtr, WriterVersion,
 };
-use parquet::file::reader::FileReader;
+use parquet::file::reader::{ChunkReader as _, FileReader};
 use parquet::file::serialized_reader::SerializedFileReader;
 use parquet::file::writer::{SerializedFileWriter, SerializedPageWriter, TrackedWrite};
 use parquet::schema::types::{ColumnDescPtr, Type, TypePtr};
@@ -197,6 +197,7 @@ impl ParquetSource {
         let path = file.shown.clone();
         let mut file = file.open()?;
         let length = check_footer(&path, &mut file)?;
+        let pages = file.try_clone().map_err(DatasetError::io(&path, "read"))?;
         let file = SerializedFileReader::new(file).map_err(|e| read_error(&path, e))?;
         let found = file.metadata().file_metadata().schema_descr().columns();
         let names: Vec<String> = found.iter().map(|c| c.path().string()).collect();
@@ -213,6 +214,7 @@ impl ParquetSource {
             }
         }
         check_places(&path, length, &file)?;
+        check_pages(&path, &pages, &file, columns)?;
         Ok(Self {
             path,
             file,
@@ -269,6 +271,139 @@ fn check_places(
         }
     }
     Ok(())
+}
+
+/// Bytes of a page's header that are read; ours have fewer than a hundred.
+const MAX_PAGE_HEADER: u64 = 512;
+
+/// Every page of these columns must be one that we write: the reader takes as much memory as a header says, and panics where it names a
+/// dictionary that is not there.
+fn check_pages(
+    path: &Path,
+    pages: &File,
+    file: &SerializedFileReader<File>,
+    columns: &[Column],
+) -> Result<(), DatasetError> {
+    for group in file.metadata().row_groups() {
+        for &column in columns {
+            let fail = |what: &str| read_error(path, format!("column {column} has {what}"));
+            let (mut at, bytes) = group.column(column as usize).byte_range();
+            let (end, mut rows) = (at + bytes, 0);
+            while at < end {
+                let length = MAX_PAGE_HEADER.min(end - at) as usize;
+                let head = pages.get_bytes(at, length);
+                let head = head.map_err(|e| read_error(path, e))?;
+                let mut header = Thrift(&head);
+                let page = header.page().filter(PageHeader::is_ours);
+                let page = page.ok_or_else(|| fail("a page that peelnet does not write"))?;
+                at += (length - header.0.len()) as u64 + page.compressed as u64;
+                rows += page.values;
+            }
+            if at != end || rows != group.num_rows() {
+                return Err(fail("pages of other lengths than the footer says"));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Numbers of a page's header.
+#[derive(Default)]
+struct PageHeader {
+    kind: i64,
+    uncompressed: i64,
+    compressed: i64,
+    values: i64,
+    encoding: i64,
+}
+
+impl PageHeader {
+    /// Whether it is a data page of the first version, of plain values of four bytes each.
+    fn is_ours(&self) -> bool {
+        (self.kind, self.encoding) == (0, 0)
+            && (1..=PAGE_ROWS as i64).contains(&self.values)
+            && self.uncompressed == 4 * self.values
+            && self.compressed >= 0
+    }
+}
+
+/// Bytes of Thrift's compact protocol.
+struct Thrift<'a>(&'a [u8]);
+
+impl Thrift<'_> {
+    /// The next bytes.
+    fn take(&mut self, count: usize) -> Option<&[u8]> {
+        let (taken, rest) = self.0.split_at_checked(count)?;
+        self.0 = rest;
+        Some(taken)
+    }
+
+    fn unsigned(&mut self) -> Option<u64> {
+        let mut number = 0;
+        for shift in (0..64).step_by(7) {
+            let byte = u64::from(self.take(1)?[0]);
+            number |= (byte & 127) << shift;
+            if byte < 128 {
+                return Some(number);
+            }
+        }
+        None
+    }
+
+    fn signed(&mut self) -> Option<i64> {
+        let number = self.unsigned()?;
+        Some((number >> 1).cast_signed() ^ -(number & 1).cast_signed())
+    }
+
+    fn page(&mut self) -> Option<PageHeader> {
+        let mut page = PageHeader::default();
+        self.fields(&mut |path, number| {
+            let field = match path {
+                [1, 0, 0] => &mut page.kind,
+                [2, 0, 0] => &mut page.uncompressed,
+                [3, 0, 0] => &mut page.compressed,
+                // Of a data page.
+                [5, 1, 0] => &mut page.values,
+                [5, 2, 0] => &mut page.encoding,
+                _ => return,
+            };
+            *field = number;
+        })?;
+        Some(page)
+    }
+
+    /// Hands on every integer of a structure with the numbers of the fields that it lies in, the outermost first; `None` of what page
+    /// headers do not have: lists, and structures more than three deep.
+    fn fields(&mut self, number_at: &mut dyn FnMut([i64; 3], i64)) -> Option<()> {
+        let (mut path, mut depth) = ([0; 3], 0);
+        loop {
+            let head = self.take(1)?[0];
+            if head == 0 {
+                // The end of a structure.
+                path[depth] = 0;
+                match depth.checked_sub(1) {
+                    Some(outer) => depth = outer,
+                    None => return Some(()),
+                }
+                continue;
+            }
+            path[depth] = match head >> 4 {
+                0 => self.signed()?,
+                more => path[depth].checked_add(i64::from(more))?,
+            };
+            match head & 15 {
+                // True and false.
+                1 | 2 => {}
+                4..=6 => number_at(path, self.signed()?),
+                8 => {
+                    let length = self.unsigned()?.try_into().ok()?;
+                    self.take(length)?;
+                }
+                12 if depth < 2 => depth += 1,
+                _ => return None,
+            }
+        }
+    }
 }
 
 fn read_error(path: &Path, what: impl fmt::Display) -> DatasetError {

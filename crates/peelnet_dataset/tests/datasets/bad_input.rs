@@ -150,6 +150,17 @@ fn contents_that_are_none() {
         bytes[end..end + 4].copy_from_slice(&0x7fff_ffffu32.to_le_bytes());
     });
     refused(Format::Parquet, PARQUET, footer, &["2147483647 bytes"]);
+    let page = |change| {
+        let words = ["one_minus_alpha", "a page that peelnet does not write"];
+        refused(Format::Parquet, PARQUET, change, &words);
+    };
+    // Of the first page: its length is larger than that of its values, and they are numbers of a dictionary that is not there.
+    let length: Change = Box::new(|bytes| {
+        assert_eq!(bytes[..7], *b"PAR1\x15\0\x15");
+        bytes[8] = 127;
+    });
+    page(length);
+    page(bytes(b"\x15\0\x15\x06", b"\x15\x10\x15\x06"));
 }
 
 #[test]

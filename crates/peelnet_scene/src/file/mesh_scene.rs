@@ -106,8 +106,14 @@ fn sphere(mesh: &Mesh) -> Result<Sphere, String> {
     Ok(((low + high) / 2.0, radius))
 }
 
-/// A camera of the file; `None` where its numbers make no sense.
+/// A camera of the file, whose target is as far ahead as the middle of all is, and behind its near plane: the file says in which direction
+/// it looks, and what turns about the target needs to know at what. `None` where its numbers make no sense.
 fn sound(mut camera: Camera, (middle, radius): Sphere) -> Option<Camera> {
+    let direction = camera.target - camera.position;
+    // Nearer than that, it would be where the camera is.
+    let least = camera.near.max(1e-5 * camera.position.abs().max_element());
+    let ahead = (middle - camera.position).dot(direction).max(least);
+    camera.target = camera.position + direction * ahead;
     if camera.far == f32::INFINITY {
         let distance = (camera.position - middle).length();
         camera.far = distance + 4.0 * radius;

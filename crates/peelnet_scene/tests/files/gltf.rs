@@ -133,9 +133,28 @@ fn nodes_instances_materials_lights_and_cameras() {
     assert_eq!(sources, [(point, 40.0), (Source::Toward(Vec3::Z), 1.0)]);
     let camera = &scene.views[0];
     assert_eq!(camera.position, Vec3::new(0.0, 0.0, 5.0));
-    assert_eq!(camera.target, Vec3::new(0.0, 0.0, 4.0));
+    // As far ahead as the middle of what is there.
+    let middle = mesh.bounds().map(|(low, high)| (low + high) / 2.0);
+    assert_eq!(camera.target, Vec3::new(0.0, 0.0, middle.unwrap().z));
     assert!((camera.fov_y_degrees - 0.8f32.to_degrees()).abs() < 1e-4 && camera.far == 50.0);
     assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
+}
+
+/// A square that is folded along its diagonal has two flat faces, not a rounded edge.
+#[test]
+fn triangles_without_normals_are_flat() {
+    let mut buffer = square();
+    // z of the third vertex.
+    buffer[32..36].copy_from_slice(&1f32.to_le_bytes());
+    let mut document = document();
+    set(&mut document, "accessors/0/max", json!([1, 1, 1]));
+    let scene = load_bytes(&glb(&document, &buffer)).unwrap();
+    let mesh = &scene.objects[0].mesh;
+    for t in &mesh.triangles {
+        let [a, b, c] = t.map(|i| mesh.positions[i as usize]);
+        let normal = (b - a).cross(c - a).normalize();
+        assert!(t.iter().all(|&i| mesh.normals[i as usize] == normal));
+    }
 }
 
 /// Without a camera of its own all of it is seen.

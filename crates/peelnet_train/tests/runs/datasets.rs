@@ -130,6 +130,25 @@ fn a_view_in_two_datasets_would_count_twice() {
     assert!(error.contains("both hold view 0 of scene 'b'"), "{error}");
 }
 
+/// One of them may be trained on and the other held out: which of both a network knows would be unknown.
+#[test]
+fn two_scenes_of_one_name_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |content: &str, layers, held_out| {
+        let entry = SceneEntry {
+            content: content.repeat(64),
+            ..scene("a", held_out)
+        };
+        write_views(&folder.path().join(content), SIDE, vec![entry], |view| {
+            stacks(view, layers)
+        })
+    };
+    let config = Config::for_recipe(Recipe::THESIS);
+    let datasets = [write("1", 3, false), write("2", 4, true)];
+    let error = TrainingData::from_datasets(&config, &datasets).unwrap_err();
+    assert!(error.to_string().contains("both named 'a'"), "{error}");
+}
+
 /// Of more rows than may be held, whole pixels are drawn: of every view its share, and the same ones for the same seed.
 #[test]
 fn more_rows_than_the_limit_are_drawn_by_whole_pixels_from_every_view() {

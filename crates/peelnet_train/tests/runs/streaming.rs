@@ -86,6 +86,14 @@ fn a_checkpoint_of_another_dataset_or_buffer_is_refused() {
     run(&config, &data, &out).unwrap();
     let error = train(&config, &write_dataset("b", 3), &resuming(&out), |_| {}).unwrap_err();
     assert!(error.to_string().contains("other rows"), "{error}");
+    // The same files, of which a scene is held out now.
+    let scenes = vec![scene("s0", false), scene("s1", true)];
+    let marked = write_views(&folder.path().join("c"), SIDE, scenes, view);
+    let marked = streamed(&config, &marked, folder.path());
+    let hash = |data: &TrainingData| data.dataset.as_ref().unwrap().hash.clone();
+    assert_eq!(hash(&marked), hash(&data));
+    let error = train(&config, &marked, &resuming(&out), |_| {}).unwrap_err();
+    assert!(error.to_string().contains("other rows"), "{error}");
     let mut other = config.clone();
     other.buffer_rows = None;
     let error = train(&other, &data, &resuming(&out), |_| {}).unwrap_err();

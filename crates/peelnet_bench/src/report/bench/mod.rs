@@ -41,9 +41,10 @@ impl Results<Bench> {
         bubble_chart(&front::points(&Rows::new(&self.measured.rows), mean))
     }
 
-    /// Every method as ratios to the reference methods.
+    /// Every method as ratios to the reference methods, over the views that all methods have.
     pub fn table(&self) -> Table {
-        let rows = Rows::new(&self.measured.rows);
+        let all = Rows::new(&self.measured.rows);
+        let rows = all.common();
         let points = front::points(&rows, Mean::Geometric);
         let point = |method: &str| points.iter().find(|p| p.method == method);
         let worst = |method: &str| {
@@ -56,7 +57,7 @@ impl Results<Bench> {
         let time = |m, to| number(rows.time_ratio(m, to), 3);
         let behind = |m, of: fn(&Point) -> f64| number(point(m).map(of), 2);
         Table::from_rows(
-            &rows.methods(),
+            &all.methods(),
             &[
                 ("method", &|m| (*m).to_owned()),
                 ("MSE (linear)", &|m| mse(rows.error_of(m))),
@@ -86,7 +87,7 @@ impl Results<Bench> {
         // Points come by time.
         let exact = points.iter().map(|all| {
             let first = all.iter().find(|p| p.is_exact());
-            let first = first.map(|p| format!("{:.2} ({})", p.time, p.method));
+            let first = first.map(|p| format!("{} ({})", number(p.time, 2), p.method));
             first.unwrap_or_else(|| "–".to_owned())
         });
         let first = std::iter::once("the fastest exact one".to_owned());
@@ -95,7 +96,7 @@ impl Results<Bench> {
         let named = scenes.iter().map(|s| scene_heading(s, trained_on));
         let mut table = Table::matrix(TO_BASE, named, &rows.methods(), |method, k| {
             let own = points[k].iter().find(|p| p.method == method);
-            number(own.map(|p| p.time), 2)
+            number(own.and_then(|p| p.time), 2)
         });
         table.rows.insert(0, first);
         table
@@ -103,7 +104,9 @@ impl Results<Bench> {
 
     fn markdown(&self) -> String {
         let rows = Rows::new(&self.measured.rows);
-        let mut reasons = String::new();
+        let mut reasons = rows
+            .note()
+            .map_or_else(String::new, |note| format!(" {note}"));
         for (method, why) in untimed(&rows) {
             reasons += &format!(" {method} has no time: {why}.");
         }
@@ -118,5 +121,9 @@ impl Results<Bench> {
 
 /// A mean squared error; 0 of an exact method.
 fn mse(error: Option<f64>) -> String {
-    error.map_or_else(|| "0".to_owned(), |x| format!("{x:.2e}"))
+    match error {
+        None => "–".to_owned(),
+        Some(0.0) => "0".to_owned(),
+        Some(x) => format!("{x:.2e}"),
+    }
 }

@@ -26,17 +26,20 @@ const MAGNIFIED: u16 = 8;
 /// The whole page. In the folder, `images` holds `<scene>-<method>.png`.
 pub(super) fn page(results: &Results<Bench>, folder: &Path) -> Result<String, EvalError> {
     let images = &folder.join("images");
-    let rows = &Rows::new(&results.measured.rows);
-    let scenes = rows.scenes();
+    let every = Rows::new(&results.measured.rows);
+    let scenes = every.scenes();
+    let views = every.of_method(EXACT).0.len();
+    // Means are over what all methods have.
+    let rows = &every.common();
     let all = front::points(rows, Mean::Geometric);
     let by_size = front::points(rows, Mean::Arithmetic);
-    let views = rows.of_method(EXACT).0.len();
     let body = html! {
         p {
             "Methods and settings: " (all.len()) ". Scenes: " (scenes.len()) ". Views: " (views) ". Drawn by " (results.machine.adapter) "."
         }
         h2 { "All scenes" }
         p.note {
+            @if let Some(note) = every.note() { (note) " " }
             "Geometric means over scenes and views. Each bubble is a method with its settings: point at it for its figures; its area grows \
              with its bytes per pixel. No method is both faster and more accurate than one on the front (orange)."
         }
@@ -76,9 +79,10 @@ pub(super) fn page(results: &Results<Bench>, folder: &Path) -> Result<String, Ev
 }
 
 fn of_scene(bench: &Bench, scene: &str, images: &Path) -> Result<Markup, EvalError> {
-    let own = Rows::new(&bench.rows).of_scene(scene);
+    let every = Rows::new(&bench.rows).of_scene(scene);
+    let own = every.common();
     let points = front::points(&own, Mean::Geometric);
-    let first = own.of_method(EXACT).0.first().copied();
+    let first = every.of_method(EXACT).0.first().copied();
     let (fragments, most) = first.map_or((None, None), |r| (r.fragments, r.max_layers));
     let mean_depth = first.map_or(0.0, |r| {
         r.fragments.unwrap_or_default() as f64 / f64::from(r.width * r.height).max(1.0)
@@ -93,6 +97,7 @@ fn of_scene(bench: &Bench, scene: &str, images: &Path) -> Result<Markup, EvalErr
                 "View 0: " (count(fragments)) " fragments, at most " (count(most.map(u64::from))) " in a pixel, "
                 (format!("{mean_depth:.2}")) " per pixel on average."
             }
+            @if let Some(note) = every.note() { p.note { (note) } }
             (page::chart("chart", &bubble_chart(&points)))
             (points_table(&own, &points))
             (gallery(scene, shown, images, PICTURE_WIDTH)?)
@@ -110,9 +115,9 @@ pub(crate) fn points_table(rows: &Rows<'_>, points: &[Point]) -> Markup {
         points,
         &[
             ("method", &|p| p.method.clone()),
-            (TO_BASE, &|p| format!("{:.2}", p.time)),
+            (TO_BASE, &|p| number(p.time, 2)),
             ("ms", &|p| format!("{:.2}", p.time_ms)),
-            ("MSE (linear)", &|p| mse((!p.is_exact()).then_some(p.error))),
+            ("MSE (linear)", &|p| mse(Some(p.mse()))),
             (TO_WEIGHTED, &|p| ratio(p, WEIGHTED)),
             (TO_MOMENTS, &|p| ratio(p, MOMENTS)),
             ("MSE 0–255", &|p| mean(p, |r| Some(r.mse255), 2)),
@@ -205,10 +210,7 @@ pub(crate) fn gallery<'a>(
         };
         let map = DynamicImage::ImageRgb8(difference(&exact, &picture.to_rgb8()));
         let [picture, map] = [&picture, &map].map(|image| data_uri(&path, image, width));
-        let caption = format!(
-            "{}: MSE {:.2e}, {:.2} × blending",
-            p.method, p.error, p.time
-        );
+        let caption = format!("{}: MSE {:.2e}, {}", p.method, p.error, p.time_text());
         all.push(html! {
             div {
                 (figure(&picture?, &caption))

@@ -63,7 +63,7 @@ fn showcase(rows: &[Row], images: &Path) -> Result<Markup, EvalError> {
     let Some(scene) = rows.first().map(|r| r.scene.as_str()) else {
         return Ok(Markup::default());
     };
-    let rows = Rows::new(rows);
+    let rows = Rows::new(rows).common();
     let points = front::points(&rows, Mean::Arithmetic);
     // Blending without sorting is only the unit of time.
     let shown = points.iter().filter(|p| p.method != BASE);
@@ -72,7 +72,7 @@ fn showcase(rows: &[Row], images: &Path) -> Result<Markup, EvalError> {
         h2 { (scene) ", a scene that no network was trained on" }
         p.note {
             "Every method's picture, and below it how far each channel is from the exact picture. MSE: mean squared error in linear light over \
-             all views; × blending: frame time in times of hardware blending without sorting."
+             all views; x hardware blending: frame time in times of hardware blending without sorting."
         }
         (pictures)
         h3 { "Error against time" }

@@ -51,6 +51,11 @@ fn size(mesh: &gltf::Mesh<'_>) -> [u64; 3] {
             Mode::TriangleStrip | Mode::TriangleFan => indices.saturating_sub(2),
             _ => return all,
         };
+        // Without normals, every triangle gets vertices of its own.
+        let vertices = match primitive.get(&Semantic::Normals) {
+            Some(normals) if normals.count() as u64 == vertices => vertices,
+            _ => vertices.max(triangles.saturating_mul(3)),
+        };
         let own = [1, triangles, vertices];
         sum(all, own)
     })
@@ -162,6 +167,9 @@ impl<'a, 'f> Reader<'a, 'f> {
                 }
                 Kind::Spot { .. } => (None, "spot lights"),
             };
+            if light.range().is_some() && matches!(source, Some(Source::Point(_))) {
+                self.missing("ranges of lights", "", "");
+            }
             let color = light.color().map(|c| finite(c, 0.0, 1.0));
             let intensity = finite(light.intensity(), 0.0, f32::MAX);
             if (color, intensity) != (light.color(), light.intensity()) {

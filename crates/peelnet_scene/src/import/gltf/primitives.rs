@@ -58,14 +58,15 @@ impl Reader<'_, '_> {
         let is_mirrored = Mat3::from_mat4(world).determinant() < 0.0;
         let triangles = triangles(mode, &indices, is_mirrored);
         let normal_matrix = Mat3::from_mat4(world).inverse().transpose();
-        // Computed where the file has none, or zeros.
+        // Where the file has none, triangles are flat, as the format says (3.7.2.1); zeros among others are computed.
         let given = reader.read_normals();
         let given = given.filter(|given| given.len() == positions.len());
+        let is_flat = given.is_none();
         let given = given.into_iter().flatten();
         let given = given.map(|n| (normal_matrix * Vec3::from(n)).normalize_or_zero());
         let mut normals: Vec<Vec3> = given.collect();
         normals.resize(positions.len(), Vec3::ZERO);
-        if normals.contains(&Vec3::ZERO) {
+        if !is_flat && normals.contains(&Vec3::ZERO) {
             let smooth = smooth_normals(&positions, &triangles);
             for (normal, smooth) in normals.iter_mut().zip(smooth) {
                 if *normal == Vec3::ZERO {
@@ -104,6 +105,9 @@ impl Reader<'_, '_> {
             ..Mesh::default()
         };
         let mut part = part.into_part(mesh.name().unwrap_or(&place), material);
+        if is_flat {
+            part = part.flat();
+        }
         // Of the vertices that many primitives name, each holds its own.
         if 3 * part.triangles.len() < n {
             part.keep_used();
