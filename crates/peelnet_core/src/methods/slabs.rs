@@ -161,6 +161,7 @@ struct Place {
 
 /// A pixel's scale of depth, 0 … 1, that is cut into slabs.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[expect(clippy::large_enum_variant, reason = "one a pixel, on the stack")]
 pub enum Scale {
     Among(Quantiles),
     /// Linear from each of so many knots to the next: depths, 0 … 1 of the frame's, and where on the scale they lie.
