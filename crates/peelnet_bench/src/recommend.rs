@@ -8,7 +8,7 @@ use crate::{
     front::{self, Mean, Point},
     rows::Rows,
 };
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// What must hold; `None` sets no bound.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -49,13 +49,13 @@ pub fn points_for(rows: &[Row], scene: &Scene) -> Candidates {
     // Rows of before there was a hash, and scenes that are built in code, have none.
     let is_own = |row: &&Row| row.scene_content == scene.content && !scene.content.is_empty();
     let own: Vec<Row> = rows.iter().filter(is_own).cloned().collect();
-    let views = own
-        .iter()
-        .map(|row| row.view)
-        .collect::<BTreeSet<_>>()
-        .len();
-    let views_of = |method: &str| own.iter().filter(|row| row.method == method).count();
-    let whole = own.iter().filter(|row| views_of(&row.method) == views);
+    let mut views_of: BTreeMap<&str, usize> = BTreeMap::new();
+    for row in &own {
+        *views_of.entry(&row.method).or_default() += 1;
+    }
+    let views: BTreeSet<u32> = own.iter().map(|row| row.view).collect();
+    let views = views.len();
+    let whole = own.iter().filter(|row| views_of[&*row.method] == views);
     let whole: Vec<Row> = whole.cloned().collect();
     let points = front::points(&Rows::new(&whole), Mean::Worst);
     if !points.is_empty() {
@@ -75,10 +75,10 @@ pub fn points_for(rows: &[Row], scene: &Scene) -> Candidates {
         false => format!("scene '{name}' is not among the results"),
     };
     let rows = Rows::new(rows);
-    let note = rows
-        .note()
-        .map_or_else(String::new, |note| format!(". {note}"));
-    let warning = format!("{which}: judged by the geometric means over all scenes of them{note}");
+    let mut warning = format!("{which}: judged by the geometric means over all scenes of them");
+    if let Some(note) = rows.note() {
+        warning += &format!(". {note}");
+    }
     Candidates {
         points: front::points(&rows, Mean::Geometric),
         of_scene: false,
@@ -197,12 +197,8 @@ mod tests {
         let mut rows = vec![of_view(0, whole), of_view(0, half)];
         let found = points_for(&rows, &scene);
         assert_eq!((found.points.len(), found.of_scene), (2, true));
-        assert!(
-            found
-                .warning
-                .unwrap()
-                .contains("only 1 of the scene's 2 views")
-        );
+        let warning = found.warning.unwrap();
+        assert!(warning.contains("only 1 of the scene's 2 views"));
         rows.push(of_view(1, whole));
         let found = points_for(&rows, &scene);
         assert_eq!((found.points.len(), found.warning), (1, None));

@@ -107,13 +107,7 @@ impl<'a> Rows<'a> {
 
     /// A sentence where [`Rows::common`] leaves views out.
     pub fn note(&self) -> Option<String> {
-        let views = |rows: &Self| {
-            rows.0
-                .iter()
-                .map(|r| place(r))
-                .collect::<BTreeSet<_>>()
-                .len()
-        };
+        let views = |rows: &Self| BTreeSet::from_iter(rows.0.iter().map(|r| place(r))).len();
         let [shared, all] = [views(&self.common()), views(self)];
         (shared < all).then(|| {
             format!(
