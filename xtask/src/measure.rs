@@ -14,7 +14,7 @@ const VALIDATION_SCENES: [&str; 3] = ["intersecting", "sixteen-050", "sixteen-ra
 const PATH_METHODS: &str = "abuffer,painter-object,painter-triangle,wboit-eq9,mboit4,mboit6,wavelet-3:bounds=pixel,bins-8,avboit,kbuffer-4,stochastic-16,deep-thesis,nmt,dfaoit,deep-anchored-medium,deep-small,deep-medium,deep-large,one,deep-one,deep-one:range=last,deep-one-wide";
 
 /// What draws the geometry once, and what it is compared with.
-const ONE_PASS_METHODS: &str = "abuffer,painter-object:sort=off,wboit-eq7,wboit-eq8,wboit-eq9,wboit-eq10,wboit-inverse-power,mboit4,deep-anchored-small,deep-small,one,one:range=last,one:range=frame,one-wide,one-wide:range=last,one-wide:range=frame,deep-one,deep-one:range=last,deep-one:range=frame,deep-one-wide,deep-one-wide:range=last,deep-one-wide:range=frame";
+const ONE_PASS_METHODS: &str = "abuffer,painter-object:sort=off,wboit-eq7,wboit-eq8,wboit-eq9,wboit-eq10,wboit-inverse-power,mboit4,deep-anchored-small,deep-small,deep-medium,deep-medium:range=frame,one,one:range=last,one:range=frame,one-wide,one-wide:range=last,one-wide:range=frame,deep-one,deep-one:range=last,deep-one:range=frame,deep-one-wide,deep-one-wide:range=last,deep-one-wide:range=frame";
 
 /// What is judged with a surface apart from all others.
 const APART_METHODS: &str = "abuffer,wboit-eq9,mboit4,mboit6,wavelet-3:bounds=pixel,bins-8,bins-16,avboit,kbuffer-4,slabs:keep=small,slabs:keep=medium,slabs,deep-anchored-medium,deep-small,deep-medium,deep-large,deep-medium:range=boxes,deep-medium:range=frame,one,one-wide,deep-one,deep-one-wide,deep-one:range=last,deep-one-wide:range=last,deep-one:range=frame,deep-one-wide:range=frame";
