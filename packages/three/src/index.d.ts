@@ -68,8 +68,8 @@ export interface PeelnetModel {
 export interface PeelnetPassOptions {
 	model: PeelnetModel;
 	/**
-	 * Where depths are told apart: in each pixel's own range or surroundings, at one more pass (the default), in the frame's, or, for
-	 * models that read their surroundings, where the last frame's pixels show what is seen.
+	 * Where depths are told apart: among those seen around each pixel, at one more pass of an eighth of the width and height (the default), in
+	 * the frame's range, or, for `one`, where the last frame's pixels show what is seen.
 	 */
 	range?: 'pixel' | 'frame' | 'last';
 	/** `[near, far]` of the distance along the view axis. The default is the range of the transparent objects' boxes in view. */

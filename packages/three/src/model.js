@@ -118,14 +118,10 @@ export function texturesByName( { around, passes } ) {
 
 }
 
-/**
- * The passes to draw. With `range: 'frame'` those that find what each pixel's own surroundings are, are left out.
- */
+/** The passes to draw. With `range: 'frame'` the one that finds what is seen around each pixel is left out. */
 export function passesOf( { around, passes }, range ) {
 
-	if ( range === 'frame' ) return passes.filter( ( pass ) => pass.name !== 'range' );
-
-	return around === undefined ? passes : [ around.pass, ...passes ];
+	return range === 'frame' || around === undefined ? passes : [ around.pass, ...passes ];
 
 }
 

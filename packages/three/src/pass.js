@@ -105,7 +105,7 @@ export class PeelnetPassNode extends PassNode {
 
 	}
 
-	/** Where depths are told apart: in each pixel's own range or surroundings, at one more pass, or in the frame's. */
+	/** Where depths are told apart: among those seen around each pixel, at one more small pass, in the frame, or in the last one. */
 	get range() {
 
 		return this._range;
