@@ -157,7 +157,7 @@ pub fn designs() -> Outcome {
     ] {
         program.run(&format!(
             "bench designs out/search/synthetic,out/search/peeled {} --max-rows 1200000 --size 256x192 {views} \
-             --out docs/results/llvmpipe-epyc-2cores/{out}",
+             --out docs/results/llvmpipe-xeon-2cores/{out}",
             judges.join(" ")
         ))?;
     }
