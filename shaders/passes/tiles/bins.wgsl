@@ -1,4 +1,5 @@
 // Tiles, pass 1: the exported text's bins of depth and nearest fragment of one pixel in 64, without shading.
+// Variants: tiles
 import package::helpers::quantiles::zeta_of;
 import package::learned::weight::{peelnet_tile_bins, peelnet_tile_nearest};
 import package::scene::shade::opacity;

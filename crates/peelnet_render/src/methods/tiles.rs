@@ -23,7 +23,9 @@ pub(super) fn draw(p: &mut Passes<'_>, around: &SmallTexture, after_cuts: bool) 
     let seen = p.uncleared("seen", 64 * count);
     let quantiles = p.uncleared(around.name, 4 * count);
     let bins = p.geometry("passes::tiles::bins", Needs::OPACITY);
-    bins.writes(small.iter().copied()).after_cuts |= after_cuts;
+    // Opaque surfaces are compared with at the pixel that is looked at.
+    bins.features(["tiles"]).writes(small.iter().copied());
+    bins.after_cuts |= after_cuts;
     let of_pixels = p.compute("passes::tiles::seen", count);
     of_pixels.reads(small).writes([seen]).after_cuts |= after_cuts;
     p.compute("passes::tiles::quantiles", count)
