@@ -11,9 +11,13 @@ use peelnet_core::{
     statistics::SumPrecision,
 };
 use peelnet_scene::Material;
-use peelnet_tests::{HALF, draw, gpu, object, rectangle, scene, wall};
+use peelnet_tests::{HALF, draw, gpu, object, opaque, rectangle, scene, wall};
 
 const BACKGROUND: [f32; 3] = [0.25, 0.5, 0.75];
+
+/// Of an opaque wall in front of the last layer, and where it is.
+const OPAQUE: [f32; 3] = [0.7, 0.6, 0.2];
+const OPAQUE_AT: f32 = 3.0;
 
 const SIZE: [u32; 2] = [24, 16];
 
@@ -26,8 +30,8 @@ const OTHER_STEPS: usize = 4;
 /// Frames that a still image is drawn in after the first.
 const SETTLED: u32 = 12;
 
-/// Five layers, two of which end in the middle of the frame: the pixel of the middle tiles sees other depths than those beside it, and all
-/// pixels are told what lies between.
+/// Five layers, two of which end in the middle of the frame, and an opaque wall that hides the last in the other half: the pixel of the middle
+/// tiles sees other depths than those beside it, and all pixels are told what lies between.
 #[test]
 fn pixels_are_told_what_is_seen_around_them() {
     let layer = |z, alpha, color| Fragment::new(z, alpha, color);
@@ -51,12 +55,21 @@ fn pixels_are_told_what_is_seen_around_them() {
         );
         object(&left, material(f))
     });
-    let scene = scene("five layers", BACKGROUND, whole.chain(half).collect());
+    let right = rectangle(
+        [0.0, 2.0 * OPAQUE_AT],
+        [-2.0 * OPAQUE_AT, 2.0 * OPAQUE_AT],
+        OPAQUE_AT,
+    );
+    let hiding = object(&right, opaque(OPAQUE));
+    let objects = whole.chain(half).chain([hiding]);
+    let scene = scene("five layers", BACKGROUND, objects.collect());
+    let is_left = |x: u32| x < SIZE[0] / 2;
+    let behind = |x: u32| if is_left(x) { BACKGROUND } else { OPAQUE };
     let all = || walls.iter().chain(&halves).copied();
     let warp = DepthWarp::new(1.0, 4.0).with_spans(all().map(|f| [f.depth.into(); 2]));
     let fragments = |x: u32| -> Vec<Fragment> {
-        let is_left = x < SIZE[0] / 2;
-        all().filter(|f| is_left || walls.contains(f)).collect()
+        let is_seen = |f: &Fragment| walls.contains(f) && f.depth < OPAQUE_AT;
+        all().filter(|f| is_left(x) || is_seen(f)).collect()
     };
     let seen = |x: u32| {
         let points = fragment::points(&fragments(x));
@@ -68,19 +81,19 @@ fn pixels_are_told_what_is_seen_around_them() {
     };
     let small = tiles(&|[x, _]| seen(8 * x + 4));
     assert_ne!(small.at([0, 0]), small.at([23, 0]));
-    type Color<'a> = &'a dyn Fn(&[Fragment], Around) -> [f32; 3];
+    type Color<'a> = &'a dyn Fn(&[Fragment], [f32; 3], Around) -> [f32; 3];
     let of_sums = |design| {
-        move |list: &[Fragment], around| {
-            one::composite(list, BACKGROUND, &warp, design, around, formula)
+        move |list: &[Fragment], behind, around| {
+            one::composite(list, behind, &warp, design, around, formula)
         }
     };
     let of_slabs = |layout: Layout| {
-        move |list: &[Fragment], around: Around| {
+        move |list: &[Fragment], behind, around: Around| {
             let design = slabs::Design {
                 extent: Extent::Among(around.quantiles),
                 ..layout.design()
             };
-            slabs::composite(list, BACKGROUND, &warp, design, slabs::middle)
+            slabs::composite(list, behind, &warp, design, slabs::middle)
         }
     };
     let (one, wide) = (of_sums(Design::ONE), of_sums(Design::WIDE));
@@ -112,7 +125,7 @@ fn pixels_are_told_what_is_seen_around_them() {
         for y in 0..SIZE[1] {
             for x in 0..SIZE[0] {
                 let around = Around::new(tiles_of_frame.at([x, y]), [x, y]);
-                let want = color(&fragments(x), around);
+                let want = color(&fragments(x), behind(x), around);
                 let found = image.pixels[(y * SIZE[0] + x) as usize];
                 let errors = found.iter().zip(want).map(|(a, b)| (a - b).abs());
                 let error = errors.fold(0.0, f32::max);
