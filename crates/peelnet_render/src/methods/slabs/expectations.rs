@@ -52,7 +52,6 @@ pub(super) const METHOD: Expectations = SLABS.failing(&[
 
 pub(super) const SMALL: Expectations = SLABS.failing(&[
     SWALLOWED,
-    BORDERS.when(|s| !is_of_tiles(s)),
     ROUNDED_OTHERWISE,
     KnownFailure::unsettled(Property::Order, "near-overflow"),
     FEW_PIXELS.when(is_of_tiles),
