@@ -30,6 +30,11 @@ const OTHER_STEPS: usize = 4;
 /// Frames that a still image is drawn in after the first.
 const SETTLED: u32 = 12;
 
+fn apart_by(found: &[f32; 4], want: [f32; 3]) -> f32 {
+    let errors = found.iter().zip(want).map(|(a, b)| (a - b).abs());
+    errors.fold(0.0, f32::max)
+}
+
 /// Five layers, two of which end in the middle of the frame, and an opaque wall that hides the last in the other half: the pixel of the middle
 /// tiles sees other depths than those beside it, and all pixels are told what lies between.
 #[test]
@@ -96,7 +101,7 @@ fn pixels_are_told_what_is_seen_around_them() {
             slabs::composite(list, behind, &warp, design, slabs::middle)
         }
     };
-    let (one, wide) = (of_sums(Design::ONE), of_sums(Design::WIDE));
+    let [one, wide] = [Design::ONE, Design::WIDE].map(of_sums);
     let [small_slabs, medium, large] = Layout::ALL.map(of_slabs);
     let methods: [(&str, Color<'_>, Option<Design>); 7] = [
         ("one", &one, None),
@@ -127,8 +132,7 @@ fn pixels_are_told_what_is_seen_around_them() {
                 let around = Around::new(tiles_of_frame.at([x, y]), [x, y]);
                 let want = color(&fragments(x), behind(x), around);
                 let found = image.pixels[(y * SIZE[0] + x) as usize];
-                let errors = found.iter().zip(want).map(|(a, b)| (a - b).abs());
-                let error = errors.fold(0.0, f32::max);
+                let error = apart_by(&found, want);
                 if error.is_nan() || error > TOLERANCE {
                     apart.push((x, y, error));
                 }
