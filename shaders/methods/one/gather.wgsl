@@ -1,15 +1,15 @@
 // One pass: the exported text's sums of each fragment, and the nearest fragment with its colour.
 // Variants: none | wide | frame | wide frame
-@if(!frame) import package::helpers::quantiles::{between, tiles_around};
+@if(!frame) import package::helpers::quantiles::around_of;
 import package::helpers::quantiles::zeta_of;
 @if(frame) import package::learned::weight::peelnet_even;
 import package::learned::weight::{peelnet_noise, peelnet_statistics};
-@if(!frame) import package::scene::camera::camera;
 import package::scene::shade::shade;
 import package::scene::surface::Surface;
 import package::scene::visible::visible;
 
-@if(!frame) @group(1) @binding(0) var<storage, read> quantiles: array<u32>;
+@if(!frame) @group(1) @binding(0) var quantiles: texture_2d<f32>;
+@if(!frame) @group(1) @binding(1) var bilinear: sampler;
 
 struct Sums {
     @location(0) a: vec4f,
@@ -29,10 +29,8 @@ fn fragment_main(surface: Surface) -> Sums {
     }
     let color = shade(surface);
     let pixel = vec2u(surface.position.xy);
-    @if(!frame) let tiles = tiles_around(pixel, camera.frame_size);
-    @if(!frame) let at = tiles.numbers;
     @if(frame) let around = peelnet_even();
-    @else let around = between(vec4u(quantiles[at.x], quantiles[at.y], quantiles[at.z], quantiles[at.w]), tiles.part);
+    @else let around = around_of(quantiles, bilinear, surface.position.xy);
     // Not multiplied by the opacity.
     let rgb = color.rgb / max(color.a, 1e-6);
     let s = peelnet_statistics(color.a, rgb, zeta_of(surface.depth_linear), around, peelnet_noise(pixel));

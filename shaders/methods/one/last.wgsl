@@ -1,6 +1,6 @@
 // One pass, after it: what is seen behind the nearest fragment of the pixel in the middle of each tile, for the quantiles of the next frame.
 // Variants: none | wide
-import package::helpers::quantiles::{between, tiles_around};
+import package::helpers::quantiles::around_of;
 import package::learned::weight::{peelnet_last_seen, peelnet_noise};
 
 // Width and height of the frame.
@@ -13,8 +13,9 @@ import package::learned::weight::{peelnet_last_seen, peelnet_noise};
 @if(wide) @group(0) @binding(6) var sum_f: texture_2d<f32>;
 @group(0) @binding(7) var absorbances: texture_2d<f32>;
 @if(wide) @group(0) @binding(8) var absorbances_back: texture_2d<f32>;
-@group(0) @binding(9) var<storage, read> quantiles: array<u32>;
-@group(0) @binding(10) var<storage, read_write> seen: array<mat4x4f>;
+@group(0) @binding(9) var quantiles: texture_2d<f32>;
+@group(0) @binding(10) var bilinear: sampler;
+@group(0) @binding(11) var<storage, read_write> seen: array<mat4x4f>;
 
 @compute @workgroup_size(64)
 fn main(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: vec3u, @builtin(local_invocation_index) lane: u32) {
@@ -25,9 +26,7 @@ fn main(@builtin(workgroup_id) group: vec3u, @builtin(num_workgroups) groups: ve
     }
     let tile = vec2u(index % count.x, index / count.x);
     let pixel = min(8u * tile + 4u, frame.xy - 1u);
-    let tiles = tiles_around(pixel, frame.xy);
-    let at = tiles.numbers;
-    let around = between(vec4u(quantiles[at.x], quantiles[at.y], quantiles[at.z], quantiles[at.w]), tiles.part);
+    let around = around_of(quantiles, bilinear, vec2f(pixel) + 0.5);
     let a = textureLoad(sum_a, pixel, 0);
     let b = textureLoad(sum_b, pixel, 0);
     let c = textureLoad(sum_c, pixel, 0);

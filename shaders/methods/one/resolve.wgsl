@@ -1,6 +1,6 @@
 // One pass: the exported text's resolve; its colour over black alone where light takes a colour.
 // Variants: none | wide | frame | wide frame | tinted | wide tinted | frame tinted | wide frame tinted
-@if(!frame) import package::helpers::quantiles::{between, tiles_around};
+@if(!frame) import package::helpers::quantiles::around_of;
 @if(frame) import package::learned::weight::peelnet_even;
 import package::learned::weight::peelnet_noise;
 @if(tinted) import package::learned::weight::peelnet_pixel;
@@ -15,17 +15,16 @@ import package::learned::weight::peelnet_noise;
 @if(wide) @group(0) @binding(6) var sum_f: texture_2d<f32>;
 @group(0) @binding(7) var absorbances: texture_2d<f32>;
 @if(wide) @group(0) @binding(8) var absorbances_back: texture_2d<f32>;
-@if(!frame) @group(0) @binding(9) var<storage, read> quantiles: array<u32>;
-@if(tinted) @group(0) @binding(10) var tinted: texture_2d<f32>;
+@if(!frame) @group(0) @binding(9) var quantiles: texture_2d<f32>;
+@if(!frame) @group(0) @binding(10) var bilinear: sampler;
+@if(tinted) @group(0) @binding(11) var tinted: texture_2d<f32>;
 
 @fragment
 fn fragment_main(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let pixel = vec2u(position.xy);
     let behind = textureLoad(background, pixel, 0).rgb;
-    @if(!frame) let tiles = tiles_around(pixel, textureDimensions(absorbances));
-    @if(!frame) let at = tiles.numbers;
     @if(frame) let around = peelnet_even();
-    @else let around = between(vec4u(quantiles[at.x], quantiles[at.y], quantiles[at.z], quantiles[at.w]), tiles.part);
+    @else let around = around_of(quantiles, bilinear, position.xy);
     let noise = peelnet_noise(pixel);
     let a = textureLoad(sum_a, pixel, 0);
     let b = textureLoad(sum_b, pixel, 0);

@@ -1,11 +1,10 @@
 // Slabs, pass 2: the exported text's weight of each fragment.
 // Variants: none | small | medium | tinted | small tinted | medium tinted | frame | small frame | medium frame | tinted frame | small tinted frame | medium tinted frame | boxes | small boxes | medium boxes | tinted boxes | small tinted boxes | medium tinted boxes
-@if(!frame && !boxes) import package::helpers::quantiles::{between, tiles_around};
+@if(!frame && !boxes) import package::helpers::quantiles::around_of;
 @if(boxes) import package::helpers::quantiles::in_range;
 import package::helpers::quantiles::zeta_of;
 @if(frame) import package::learned::weight::peelnet_even;
 import package::learned::weight::peelnet_fragment;
-@if(!frame && !boxes) import package::scene::camera::camera;
 import package::scene::shade::shade;
 @if(tinted) import package::scene::shade::covering;
 import package::scene::surface::Surface;
@@ -16,7 +15,8 @@ import package::scene::visible::visible;
 @if(!small) @group(1) @binding(2) var farthest: texture_2d<f32>;
 @if(!medium) @group(1) @binding(3) var firsts: texture_2d<f32>;
 @if(boxes) @group(1) @binding(4) var range: texture_2d<f32>;
-@if(!frame && !boxes) @group(1) @binding(5) var<storage, read> quantiles: array<u32>;
+@if(!frame && !boxes) @group(1) @binding(5) var quantiles: texture_2d<f32>;
+@if(!frame && !boxes) @group(1) @binding(6) var bilinear: sampler;
 
 struct Sums {
     @location(0) sum: vec4f,
@@ -32,11 +32,9 @@ fn fragment_main(surface: Surface) -> Sums {
     let pixel = vec2u(surface.position.xy);
     let color = shade(surface);
     let zeta = zeta_of(surface.depth_linear);
-    @if(!frame && !boxes) let tiles = tiles_around(pixel, camera.frame_size);
-    @if(!frame && !boxes) let at = tiles.numbers;
     @if(frame) let around = peelnet_even();
     @elif(boxes) let around = in_range(textureLoad(range, pixel, 0).xy);
-    @else let around = between(vec4u(quantiles[at.x], quantiles[at.y], quantiles[at.z], quantiles[at.w]), tiles.part);
+    @else let around = around_of(quantiles, bilinear, surface.position.xy);
     let a = textureLoad(absorbances, pixel, 0);
     let n = textureLoad(nearest, pixel, 0);
     @if(!small) let f = textureLoad(farthest, pixel, 0);

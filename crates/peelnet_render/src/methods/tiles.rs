@@ -21,14 +21,15 @@ pub(super) fn draw(p: &mut Passes<'_>, around: &SmallTexture, after_cuts: bool) 
     let [columns, rows] = p.on.size.map(|n| u64::from(n.div_ceil(around.every)));
     let count = columns * rows;
     let seen = p.uncleared("seen", 64 * count);
-    let quantiles = p.uncleared(around.name, 4 * count);
+    let quantiles = Target::half(around.name, 4, Blend::AddBytes).every(around.every);
+    let quantiles = p.target(quantiles);
     let bins = p.geometry("passes::tiles::bins", Needs::OPACITY);
     // Opaque surfaces are compared with at the pixel that is looked at.
     bins.features(["tiles"]).writes(small.iter().copied());
     bins.after_cuts |= after_cuts;
     let of_pixels = p.compute("passes::tiles::seen", count);
     of_pixels.reads(small).writes([seen]).after_cuts |= after_cuts;
-    p.compute("passes::tiles::quantiles", count)
+    p.pixels("passes::tiles::quantiles")
         .reads([seen])
         .writes([quantiles]);
     Tiles {

@@ -13,10 +13,11 @@ pub mod views;
 use crate::RenderError;
 use crate::geometry::{
     Blend, BoxPass, GeometryPass, Needs, Order, Sorted, frame::unwritten_texture,
+    fullscreen::FullscreenPass,
 };
-use crate::gpu::{Kernel, bind::Bind, wgpu};
+use crate::gpu::{Gpu, Kernel, bind::Bind, wgpu};
 use crate::methods::{MethodSpec, Precision};
-use compositor::{Build, Compositor, resolve};
+use compositor::{Build, Compositor};
 use peelnet_model::{Recipe, inputs::Surroundings};
 use planned::{History, Planned, PlannedPass, Work};
 use views::Shows;
@@ -141,8 +142,8 @@ enum Draws {
     Pixels,
 }
 
-/// One pass: its shader, what it reads and what it writes, targets in the order of the shader's locations. A compute shader may read the
-/// frame's size as `frame`, the resolve `C_0` as `background`.
+/// One pass: its shader, what it reads and what it writes, targets in the order of the shader's locations. Compute shaders and
+/// passes over pixels may read the frame's size as `frame`, the latter `C_0` as `background`, and what reads small targets `bilinear`, a sampler.
 #[derive(Debug)]
 pub(crate) struct Pass {
     shader: String,
@@ -327,9 +328,15 @@ impl<'a> Passes<'a> {
         self.pass(shader, Draws::Threads(threads), Needs::DEPTH)
     }
 
+    /// A pass over every pixel of what it writes.
+    pub fn pixels(&mut self, shader: &str) -> &mut Pass {
+        self.pass(shader, Draws::Pixels, Needs::DEPTH)
+    }
+
     /// The pass that writes finished pixels: the last.
     pub fn resolve(&mut self, shader: &str, reads: impl IntoIterator<Item = Handle>) -> &mut Pass {
-        self.pass(shader, Draws::Pixels, Needs::DEPTH).reads(reads)
+        let output = self.output();
+        self.pixels(shader).reads(reads).writes([output])
     }
 
     /// Where light takes a colour, the pass before the resolve also writes what fragments cover of each channel into one more target, and
@@ -441,19 +448,28 @@ impl<'a> Passes<'a> {
         let (gpu, output) = (&b.scene.gpu, b.frame.output);
         let (shader, features) = (pass.shader.as_str(), self.features(pass));
         let modules = self.modules(pass);
-        let size = matches!(pass.draws, Draws::Threads(_)).then(|| {
+        let needs_size = matches!(pass.draws, Draws::Threads(_) | Draws::Pixels);
+        let size = needs_size.then(|| {
             let [width, height] = b.frame.size;
             let usage = wgpu::BufferUsages::UNIFORM;
             gpu.upload("frame size", &[width, height, 0, 0], usage)
         });
+        let sampler = pass
+            .reads
+            .iter()
+            .any(|read| self.resources[read.0].is_small());
+        let sampler = sampler.then(|| bilinear(gpu));
         let mut entries: Vec<(&str, Bind<'_>)> = match pass.draws {
-            Draws::Threads(_) => size.iter().map(|s| ("frame", Bind::Uniform(s))).collect(),
             Draws::Pixels => vec![("background", Bind::Texture(&b.frame.background))],
-            Draws::Surfaces | Draws::Boxes => Vec::new(),
+            Draws::Threads(_) | Draws::Surfaces | Draws::Boxes => Vec::new(),
         };
+        entries.extend(size.iter().map(|size| ("frame", Bind::Uniform(size))));
+        entries.extend(sampler.iter().map(|s| ("bilinear", Bind::Sampler(s))));
         for read in &pass.reads {
-            let name = self.resources[read.0].name();
+            let resource = &self.resources[read.0];
+            let name = resource.name();
             entries.extend(match &resources[read.0] {
+                Allocated::Texture(view) if resource.is_small() => Some((name, Bind::Image(view))),
                 Allocated::Texture(view) => Some((name, Bind::Texture(view))),
                 Allocated::Storage(buffer) => Some((name, Bind::Read(buffer))),
                 Allocated::Uniform(buffer) => Some((name, Bind::Uniform(buffer))),
@@ -494,7 +510,9 @@ impl<'a> Passes<'a> {
                 Work::Threads(kernel, u32::try_from(threads).unwrap_or(u32::MAX))
             }
             Draws::Pixels => {
-                let pass = resolve(gpu, b.frame, shader, &features, &modules, &entries);
+                let pass = FullscreenPass::new(
+                    gpu, shader, &features, &modules, &entries, &states, samples,
+                );
                 Work::Pixels(pass?)
             }
             Draws::Surfaces | Draws::Boxes => {
@@ -526,6 +544,16 @@ impl<'a> Passes<'a> {
     }
 }
 
+/// What small targets are read through.
+fn bilinear(gpu: &Gpu) -> wgpu::Sampler {
+    gpu.device.create_sampler(&wgpu::SamplerDescriptor {
+        label: Some("bilinear"),
+        mag_filter: wgpu::FilterMode::Linear,
+        min_filter: wgpu::FilterMode::Linear,
+        ..Default::default()
+    })
+}
+
 /// A resource of a frame.
 #[derive(Clone, Debug)]
 pub(crate) enum Allocated {
@@ -551,6 +579,11 @@ impl Resource {
             | Self::Storage { name, .. }
             | Self::Given(name, _) => name,
         }
+    }
+
+    /// Whether it is a target of fewer pixels than the frame: read between its texels.
+    const fn is_small(&self) -> bool {
+        matches!(self, Self::Target(target) if target.every > 1)
     }
 
     fn allocate(&self, b: &Build<'_>, sizes: &mut Sizes) -> Result<Allocated, RenderError> {

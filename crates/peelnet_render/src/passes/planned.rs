@@ -76,6 +76,19 @@ pub(super) enum Work {
     Pixels(FullscreenPass),
 }
 
+impl PlannedPass {
+    fn attachments<'c>(
+        &'c self,
+        cx: &DrawContext<'c, '_>,
+    ) -> Vec<Option<wgpu::RenderPassColorAttachment<'c>>> {
+        let colors = self.colors.iter().map(|color| match color {
+            Some((view, start)) => clear_color(view, *start),
+            None => cx.output(),
+        });
+        colors.collect()
+    }
+}
+
 impl Planned {
     /// The passes of this frame.
     fn drawn(&self) -> impl Iterator<Item = &PlannedPass> {
@@ -88,11 +101,7 @@ impl Planned {
     }
 
     fn draw_geometry(&self, cx: &mut DrawContext<'_, '_>, p: &PlannedPass) {
-        let colors = p.colors.iter().map(|color| match color {
-            Some((view, start)) => clear_color(view, *start),
-            None => cx.output(),
-        });
-        let mut colors: Vec<_> = colors.collect();
+        let mut colors = p.attachments(cx);
         if colors.is_empty() {
             colors.extend(self.attachment.as_ref().map(unwritten_attachment));
         }
@@ -129,7 +138,11 @@ impl Compositor for Planned {
         self.history.next(cx.camera, warp);
         for p in self.drawn() {
             match &p.work {
-                Work::Pixels(resolve) => cx.resolve(resolve),
+                Work::Pixels(resolve) if p.colors.contains(&None) => cx.resolve(resolve),
+                Work::Pixels(pass) => {
+                    let colors = p.attachments(cx);
+                    pass.draw(cx.recorder, &colors, None);
+                }
                 Work::Threads(kernel, threads) => kernel.dispatch(cx.recorder, *threads),
                 Work::Surfaces(_) | Work::Boxes(_) => self.draw_geometry(cx, p),
             }

@@ -69,7 +69,7 @@ fn compare(list: &Passes<'_>, pass: &Pass) -> Option<String> {
     // A geometry pass has the scene in group 0.
     let group = u32::from(matches!(pass.draws, Draws::Surfaces | Draws::Boxes));
     let is_own = |b: &&Binding| b.group == group;
-    let always = |name: &&str| !["background", "frame"].contains(name);
+    let always = |name: &&str| !["background", "bilinear", "frame"].contains(name);
     let variables = shader
         .bindings
         .iter()
@@ -97,9 +97,6 @@ fn compare(list: &Passes<'_>, pass: &Pass) -> Option<String> {
         naga::TypeInner::Struct { members, .. } => members.len(),
         _ => 1,
     });
-    let targets = match pass.draws {
-        Draws::Pixels => 1,
-        _ => written().filter(is_target).count(),
-    };
+    let targets = written().filter(is_target).count();
     (outputs != targets).then(|| format!("it has {outputs} outputs and {targets} targets"))
 }
