@@ -1,7 +1,7 @@
 //! What a device must be able to do.
 
 use crate::{
-    model::{Pass, PeelnetModel, bytes},
+    model::{Pass, PeelnetModel, Target},
     shader_text::GROUP,
 };
 use bevy::{
@@ -32,10 +32,11 @@ pub(crate) fn refusal_of(
             limits.max_bind_groups
         ));
     }
+    let cost = |target: &Target| target.format.target_pixel_byte_cost().unwrap_or_default();
     for Pass { name, targets, .. } in &model.description.passes {
         for (found, what, allowed) in [
             (
-                bytes(targets),
+                targets.iter().map(cost).sum(),
                 "bytes a sample",
                 limits.max_color_attachment_bytes_per_sample,
             ),
@@ -59,7 +60,10 @@ pub(crate) fn refusal_of(
         ));
     }
     let features = device.features();
-    for format in model.targets().map(|target| target.format) {
+    for (format, every) in model
+        .targets()
+        .map(|(target, every)| (target.format, every))
+    {
         // What the adapter could do counts only where the device was asked for it.
         let flags = if features.contains(WgpuFeatures::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES) {
             adapter.get_texture_format_features(format).flags
@@ -69,7 +73,7 @@ pub(crate) fn refusal_of(
         if !flags.contains(TextureFormatFeatureFlags::BLENDABLE) {
             return Some(format!("the device cannot blend {format:?}"));
         }
-        if samples > 1 && !flags.sample_count_supported(samples) {
+        if samples > 1 && every == 1 && !flags.sample_count_supported(samples) {
             return Some(format!(
                 "the device has no {format:?} with {samples} samples a pixel"
             ));

@@ -157,6 +157,7 @@ fn setup_of(app: &mut App, model: &PeelnetModel) -> Setup {
         bevy_standard,
         standard: add("standard", include_str!("standard.wesl").to_owned()),
         draw: add("draw", shader_text::draw_text(model)),
+        around: add("around", shader_text::around_text(model)),
         resolve: add("resolve", shader_text::resolve_text(model)),
         fullscreen,
         model: model.clone(),

@@ -33,14 +33,26 @@ pub(crate) struct Target {
 #[derive(Clone, Debug, Deserialize, PartialEq)]
 pub(crate) struct Pass {
     pub name: String,
-    /// Names of targets of earlier passes.
+    /// One pixel in so many is drawn, both ways. Such a pass has one sample a pixel, and no attachment of depth.
+    #[serde(default = "every_pixel")]
+    pub every: u32,
+    /// Names of targets of earlier passes, or of the small texture.
     pub reads: Vec<String>,
     /// The statement before the writes.
     pub compute: Option<String>,
     pub targets: Vec<Target>,
 }
 
+const fn every_pixel() -> u32 {
+    1
+}
+
 impl Pass {
+    /// Whether it draws fewer pixels than the view has.
+    pub const fn is_small(&self) -> bool {
+        self.every > 1
+    }
+
     /// Whether the statements use a variable of a fragment, such as its opacity (`alpha`) or its lit colour (`rgb`).
     pub fn needs(&self, variable: &str) -> bool {
         let writes = self.targets.iter().map(|target| &target.write);
@@ -49,19 +61,25 @@ impl Pass {
     }
 }
 
-/// A small texture of what surrounds each pixel. This plugin does not draw it.
+/// A small texture of what surrounds each pixel, read by the passes between its texels.
 #[derive(Clone, Debug, Deserialize, PartialEq)]
 pub(crate) struct Around {
     pub name: String,
-    /// The expression that stands for it.
-    pub otherwise: String,
+    pub format: TextureFormat,
+    /// Pixels from one texel to the next, both ways.
+    pub every: u32,
+    /// The pass over one pixel a texel, before all others.
+    pub pass: Pass,
+    /// What is added up of that pass's targets over nine texels.
+    pub sum: String,
+    /// The expression of a texel.
+    pub write: String,
 }
 
 /// An exported network: `model.wgsl` and `model.json` of one folder of `models/`.
 ///
 /// The passes, targets, clear values and blends come from `model.json`; the mathematics are the functions of `model.wgsl`. Every recipe
-/// whose passes add or take maxima is accepted, as are networks of your own that `peelnet export` wrote. The small texture that lowers
-/// their errors (`around` in `model.json`) is not drawn.
+/// whose passes add or take maxima is accepted, as are networks of your own that `peelnet export` wrote.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PeelnetModel {
     pub(crate) wgsl: Cow<'static, str>,
@@ -80,6 +98,7 @@ struct Header {
 pub(crate) struct Description {
     recipe: String,
     pub around: Option<Around>,
+    /// In their order, that of the small texture first.
     pub passes: Vec<Pass>,
     pub resolve: String,
     pub resolve_reads: Vec<String>,
@@ -87,7 +106,7 @@ pub(crate) struct Description {
 }
 
 impl PeelnetModel {
-    /// The network to take by default: two passes, 32 bytes a sample.
+    /// The network to take by default: two passes and a small one, 32 bytes a sample.
     #[must_use]
     pub fn medium() -> Self {
         Self::shipped("medium")
@@ -105,7 +124,7 @@ impl PeelnetModel {
         Self::shipped("large")
     }
 
-    /// One pass, 32 bytes a sample.
+    /// One pass and a small one, 32 bytes a sample.
     #[must_use]
     pub fn one() -> Self {
         Self::shipped("one")
@@ -150,11 +169,13 @@ impl PeelnetModel {
             )));
         }
         let mut description: Description = serde_json::from_str(json).map_err(unreadable)?;
-        if let Some(Around { name, .. }) = &description.around {
-            let passes = description.passes.iter_mut().map(|pass| &mut pass.reads);
-            for reads in passes.chain([&mut description.resolve_reads]) {
-                reads.retain(|read| read != name);
-            }
+        if let Some(Around { every, pass, .. }) = &description.around {
+            let every = *every;
+            let small = Pass {
+                every,
+                ..pass.clone()
+            };
+            description.passes.insert(0, small);
         }
         let wgsl = wgsl.into();
         match description.check(&wgsl) {
@@ -172,26 +193,39 @@ impl PeelnetModel {
         &self.description.recipe
     }
 
-    /// Bytes that the targets take a sample, beside Bevy's own.
+    /// Bytes that the targets take a sample, beside Bevy's own. The small texture takes one more a pixel.
     #[must_use]
     pub fn bytes_per_sample(&self) -> u32 {
-        bytes(self.targets())
+        let bytes = |target: &Target| target.format.block_copy_size(None).unwrap_or_default();
+        let passes = self.description.passes.iter().filter(|p| !p.is_small());
+        passes.flat_map(|pass| &pass.targets).map(bytes).sum()
     }
 
-    pub(crate) fn targets(&self) -> impl Iterator<Item = &Target> {
-        self.description.passes.iter().flat_map(|p| &p.targets)
+    /// The targets of all passes, each with [`Pass::every`] of its own.
+    pub(crate) fn targets(&self) -> impl Iterator<Item = (&Target, u32)> {
+        let passes = self.description.passes.iter();
+        passes.flat_map(|p| p.targets.iter().map(|target| (target, p.every)))
     }
 
-    /// The binding of a target in the bind groups of passes, and in that of the resolve. 0 is the range of depths.
-    pub(crate) fn binding(&self, target: &str) -> u32 {
-        1 + self.targets().take_while(|t| t.name != target).count() as u32
+    /// Whether one of the things that passes read is the small texture.
+    pub(crate) fn is_around(&self, read: &str) -> bool {
+        let around = self.description.around.as_ref();
+        around.is_some_and(|around| around.name == read)
     }
-}
 
-/// Bytes of targets, a sample.
-pub(crate) fn bytes<'a>(targets: impl IntoIterator<Item = &'a Target>) -> u32 {
-    let bytes = |target: &Target| target.format.block_copy_size(None).unwrap_or_default();
-    targets.into_iter().map(bytes).sum()
+    /// The binding of a target in the bind groups of passes, and in that of the resolve. 0 is the range of depths. Behind all targets are the
+    /// small texture, [its sampler](Self::sampler_binding) and [Bevy's depths](Self::depth_binding).
+    pub(crate) fn binding(&self, read: &str) -> u32 {
+        1 + self.targets().take_while(|(t, _)| t.name != read).count() as u32
+    }
+
+    pub(crate) fn sampler_binding(&self) -> u32 {
+        2 + self.targets().count() as u32
+    }
+
+    pub(crate) fn depth_binding(&self) -> u32 {
+        3 + self.targets().count() as u32
+    }
 }
 
 impl Description {
@@ -228,6 +262,8 @@ impl Description {
                 }
                 drawn.push(&target.name);
             }
+            let around = self.around.as_ref().filter(|_| pass.is_small());
+            drawn.extend(around.map(|around| &around.name));
             if pass.needs("z") {
                 return Err(format!(
                     "pass {name:?} wants plain distances, which networks of this plugin do not use"

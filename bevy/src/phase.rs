@@ -10,7 +10,7 @@ use crate::{
     depths::{Boxes, clipped, depths_of_boxes},
     device::{Refusals, refusal_of},
     error::{Gravity, PeelnetMessages},
-    pipelines::{Found, HookedShaders, LearnedPipelines, Setup},
+    pipelines::{Found, HookedShaders, LearnedPipelines, OverPixels, Setup},
     view::LearnedViews,
 };
 use bevy::{
@@ -23,7 +23,7 @@ use bevy::{
         camera::ExtractedCamera,
         erased_render_asset::ErasedRenderAssets,
         render_phase::*,
-        render_resource::{PipelineCache, SpecializedRenderPipelines},
+        render_resource::{PipelineCache, SpecializedRenderPipelines, TextureUsages},
         renderer::{RenderAdapter, RenderDevice},
         view::{ExtractedView, RetainedViewEntity},
     },
@@ -59,15 +59,16 @@ pub(crate) fn mark_items(
     cache: Res<PipelineCache>,
     (device, adapter): (Res<RenderDevice>, Res<RenderAdapter>),
     mut pipelines: ResMut<LearnedPipelines>,
-    mut resolves: ResMut<SpecializedRenderPipelines<Setup>>,
+    mut over_pixels: ResMut<SpecializedRenderPipelines<Setup>>,
     mut transparent: ResMut<ViewSortedRenderPhases<Transparent3d>>,
     mut views: ResMut<LearnedViews>,
     mut refusals: ResMut<Refusals>,
-    cameras: Query<
+    mut cameras: Query<
         (
             &ExtractedView,
             &LearnedTransparency,
             &Msaa,
+            &mut Camera3d,
             Has<OrderIndependentTransparencySettings>,
         ),
         With<ExtractedCamera>,
@@ -76,7 +77,7 @@ pub(crate) fn mark_items(
     // Meshes that are drawn as Bevy draws materials.
     let draw_material = draw_functions.read().get_id::<DrawMaterial>();
     let mut live: HashSet<RetainedViewEntity> = HashSet::default();
-    for (view, settings, msaa, has_bevys) in &cameras {
+    for (view, settings, msaa, mut camera_3d, has_bevys) in &mut cameras {
         let id = view.retained_view_entity;
         let camera = id.main_entity;
         let samples = msaa.samples();
@@ -100,11 +101,17 @@ pub(crate) fn mark_items(
             continue;
         };
         live.insert(id);
-        let key = (view.target_format, samples);
-        let resolve = resolves.specialize(&cache, &setup, key);
+        let format = view.target_format;
+        let mut pipeline = |key| over_pixels.specialize(&cache, &setup, key);
         let state = views.0.entry(id).or_default();
-        state.resolve = Some(resolve);
-        if cache.get_render_pipeline(resolve).is_none() {
+        state.resolve = Some(pipeline(OverPixels::Resolve { format, samples }));
+        if setup.model.description.around.is_some() {
+            state.around = Some(pipeline(OverPixels::Around));
+            // One pixel in many looks at the depths of opaque surfaces itself.
+            camera_3d.depth_texture_usages.0 |= TextureUsages::TEXTURE_BINDING.bits();
+        }
+        let mut needed = state.around.into_iter().chain(state.resolve);
+        if needed.any(|pipeline| cache.get_render_pipeline(pipeline).is_none()) {
             continue;
         }
         let mut is_weighed = |item: &Transparent3d| {

@@ -5,7 +5,7 @@
 //! specialises (skins, morph targets, bindless materials, fog) holds here too.
 
 use crate::{
-    model::{Blend, Pass, PeelnetModel, Target},
+    model::{Around, Blend, Description, Pass, PeelnetModel, Target},
     shader_text::{GROUP, pass_define},
 };
 use bevy::{
@@ -14,7 +14,10 @@ use bevy::{
     platform::collections::{HashMap, HashSet},
     prelude::*,
     render::render_resource::{
-        binding_types::{texture_2d, texture_2d_multisampled, uniform_buffer},
+        binding_types::{
+            sampler, texture_2d, texture_2d_multisampled, texture_depth_2d,
+            texture_depth_2d_multisampled, uniform_buffer,
+        },
         *,
     },
     shader::Shader,
@@ -30,6 +33,8 @@ pub(crate) struct Setup {
     /// Kept alive: materials import it by its path.
     #[expect(dead_code, reason = "held, not read")]
     pub draw: Handle<Shader>,
+    /// Of passes over pixels.
+    pub around: Handle<Shader>,
     pub resolve: Handle<Shader>,
     pub fullscreen: FullscreenShader,
 }
@@ -106,13 +111,15 @@ fn learned_descriptors(
         let mut descriptor = RenderPipelineDescriptor::clone(base);
         descriptor.label = Some(format!("peelnet_{}_pipeline", pass.name).into());
         let samples = descriptor.multisample.count;
-        let layout = layout_of(&setup.model, &pass.reads, samples);
-        descriptor.layout.push(layout);
+        let reads = Reads::of_pass(pass, samples);
+        descriptor.layout.push(reads.layout(&setup.model));
         descriptor.multisample = MultisampleState {
-            count: samples,
+            count: if pass.is_small() { 1 } else { samples },
             ..default()
         };
-        if let Some(depth) = &mut descriptor.depth_stencil {
+        if pass.is_small() {
+            descriptor.depth_stencil = None;
+        } else if let Some(depth) = &mut descriptor.depth_stencil {
             depth.depth_write_enabled = Some(false);
         }
         let fragment = descriptor.fragment.as_mut()?;
@@ -135,24 +142,54 @@ fn learned_descriptors(
     passes.enumerate().map(descriptor).collect()
 }
 
-/// The pipeline that composites into a view's texture, by its format and samples.
-impl SpecializedRenderPipeline for Setup {
-    type Key = (TextureFormat, u32);
+/// A pass over pixels.
+#[derive(Clone, Copy, Debug, Hash, PartialEq, Eq)]
+pub(crate) enum OverPixels {
+    /// Makes the small texture.
+    Around,
+    /// Composites into a view's texture.
+    Resolve { format: TextureFormat, samples: u32 },
+}
 
-    fn specialize(&self, (format, samples): Self::Key) -> RenderPipelineDescriptor {
-        let reads = &self.model.description.resolve_reads;
+impl SpecializedRenderPipeline for Setup {
+    type Key = OverPixels;
+
+    fn specialize(&self, key: Self::Key) -> RenderPipelineDescriptor {
+        let Description {
+            around,
+            resolve_reads,
+            ..
+        } = &self.model.description;
+        let (label, shader, reads, format, samples) = match (key, around) {
+            (OverPixels::Around, Some(around)) => (
+                "peelnet_around_pipeline",
+                &self.around,
+                Reads::of_around(around),
+                around.format,
+                1,
+            ),
+            (OverPixels::Resolve { format, samples }, _) => (
+                "peelnet_resolve_pipeline",
+                &self.resolve,
+                Reads::new(resolve_reads, samples),
+                format,
+                samples,
+            ),
+            _ => unreachable!("asked for where a network reads one alone"),
+        };
         let multisampled = (samples > 1).then(|| "MULTISAMPLED".into());
         RenderPipelineDescriptor {
-            label: Some("peelnet_resolve_pipeline".into()),
-            layout: vec![layout_of(&self.model, reads, samples)],
+            label: Some(label.into()),
+            layout: vec![reads.layout(&self.model)],
             vertex: self.fullscreen.to_vertex_state(),
             fragment: Some(FragmentState {
-                shader: self.resolve.clone(),
+                shader: shader.clone(),
                 shader_defs: multisampled.into_iter().collect(),
                 targets: vec![Some(ColorTargetState {
                     format,
                     // The resolve's colour is multiplied by its coverage.
-                    blend: Some(BlendState::PREMULTIPLIED_ALPHA_BLENDING),
+                    blend: (key != OverPixels::Around)
+                        .then_some(BlendState::PREMULTIPLIED_ALPHA_BLENDING),
                     write_mask: ColorWrites::ALL,
                 })],
                 ..default()
@@ -166,22 +203,69 @@ impl SpecializedRenderPipeline for Setup {
     }
 }
 
-/// The layout of a bind group with the range of depths and the targets that are read.
-pub(crate) fn layout_of(
-    model: &PeelnetModel,
-    targets: &[String],
+/// What a pass reads beside the range of depths: one bind group.
+pub(crate) struct Reads<'a> {
+    /// Targets of earlier passes, or the small texture.
+    pub names: Vec<&'a String>,
+    /// Of the targets.
     samples: u32,
-) -> BindGroupLayoutDescriptor {
-    let not_filtered = TextureSampleType::Float { filterable: false };
-    let texture = if samples > 1 {
-        texture_2d_multisampled(not_filtered)
-    } else {
-        texture_2d(not_filtered)
-    };
-    let read = targets.iter().map(|t| (model.binding(t), texture));
-    let entries = std::iter::once((0, uniform_buffer::<Vec4>(false))).chain(read);
-    let entries = entries.map(|(binding, ty)| ty.build(binding, ShaderStages::FRAGMENT));
-    BindGroupLayoutDescriptor::new("peelnet_layout", &entries.collect::<Vec<_>>())
+    /// Of the depths of opaque surfaces, where they are read.
+    pub depth_samples: Option<u32>,
+}
+
+impl<'a> Reads<'a> {
+    pub fn new(names: impl IntoIterator<Item = &'a String>, samples: u32) -> Self {
+        Self {
+            names: names.into_iter().collect(),
+            samples,
+            depth_samples: None,
+        }
+    }
+
+    /// Of a pass over surfaces, in a view of so many samples.
+    pub fn of_pass(pass: &'a Pass, samples: u32) -> Self {
+        Self {
+            depth_samples: pass.is_small().then_some(samples),
+            ..Self::new(&pass.reads, samples)
+        }
+    }
+
+    /// Of the pass that makes the small texture.
+    pub fn of_around(around: &'a Around) -> Self {
+        Self::new(around.pass.targets.iter().map(|target| &target.name), 1)
+    }
+
+    pub fn layout(&self, model: &PeelnetModel) -> BindGroupLayoutDescriptor {
+        let texture = |samples, filterable| {
+            let kind = TextureSampleType::Float { filterable };
+            if samples > 1 {
+                texture_2d_multisampled(kind)
+            } else {
+                texture_2d(kind)
+            }
+        };
+        let mut entries = vec![(0, uniform_buffer::<Vec4>(false))];
+        for read in &self.names {
+            let is_around = model.is_around(read);
+            let samples = if is_around { 1 } else { self.samples };
+            entries.push((model.binding(read), texture(samples, is_around)));
+            if is_around {
+                let bilinear = sampler(SamplerBindingType::Filtering);
+                entries.push((model.sampler_binding(), bilinear));
+            }
+        }
+        entries.extend(self.depth_samples.map(|samples| {
+            let depth = if samples > 1 {
+                texture_depth_2d_multisampled()
+            } else {
+                texture_depth_2d()
+            };
+            (model.depth_binding(), depth)
+        }));
+        let entries = entries.into_iter();
+        let entries = entries.map(|(binding, ty)| ty.build(binding, ShaderStages::FRAGMENT));
+        BindGroupLayoutDescriptor::new("peelnet_layout", &entries.collect::<Vec<_>>())
+    }
 }
 
 fn state_of(target: &Target) -> ColorTargetState {

@@ -29,16 +29,36 @@ fn network_text(model: &PeelnetModel, group: usize) -> String {
         "{}\n// Written by bevy_peelnet from the description of this network.\n\n",
         model.wgsl
     );
-    for Target { name, .. } in model.targets() {
-        let binding = model.binding(name);
+    let mut declare = |condition: &str, binding, variable: &str, kind: &str| {
+        let _ = writeln!(
+            text,
+            "@if({condition})\n@group({group}) @binding({binding}) var {variable}: {kind};"
+        );
+    };
+    for (Target { name, .. }, every) in model.targets() {
+        let (binding, variable) = (model.binding(name), format!("peelnet_target_{name}"));
+        if every > 1 {
+            declare("true", binding, &variable, "texture_2d<f32>");
+            continue;
+        }
         for (condition, kind) in [
-            ("MULTISAMPLED", "texture_multisampled_2d"),
-            ("!MULTISAMPLED", "texture_2d"),
+            ("MULTISAMPLED", "texture_multisampled_2d<f32>"),
+            ("!MULTISAMPLED", "texture_2d<f32>"),
         ] {
-            let _ = writeln!(
-                text,
-                "@if({condition})\n@group({group}) @binding({binding}) var peelnet_target_{name}: {kind}<f32>;"
-            );
+            declare(condition, binding, &variable, kind);
+        }
+    }
+    if let Some(Around { name, .. }) = &model.description.around {
+        let binding = model.binding(name);
+        declare("true", binding, "peelnet_around", "texture_2d<f32>");
+        let binding = model.sampler_binding();
+        declare("true", binding, "peelnet_bilinear", "sampler");
+        let binding = model.depth_binding();
+        for (condition, kind) in [
+            ("MULTISAMPLED", "texture_depth_multisampled_2d"),
+            ("!MULTISAMPLED", "texture_depth_2d"),
+        ] {
+            declare(condition, binding, "peelnet_depth", kind);
         }
     }
     text
@@ -46,16 +66,21 @@ fn network_text(model: &PeelnetModel, group: usize) -> String {
 
 /// Reads targets into variables of their names, and says what else a network's calls name. The last argument is the sample of a multisampled texture, and the level of another, where it is 0.
 fn reads(model: &PeelnetModel, names: &[String]) -> String {
-    let targets = model.targets().filter(|t| names.contains(&t.name));
-    let lines = targets.map(|target| {
+    let targets = model.targets().filter(|(t, _)| names.contains(&t.name));
+    let lines = targets.map(|(target, _)| {
         let (name, (_, channels)) = (&target.name, type_of(target));
         format!(
             "    let {name} = textureLoad(peelnet_target_{name}, peelnet_at, peelnet_sample){channels};\n"
         )
     });
     let mut text: String = lines.collect();
-    if let Some(Around { name, otherwise }) = &model.description.around {
-        let _ = writeln!(text, "    let {name} = {otherwise};");
+    if let Some(Around { name, every, .. }) = &model.description.around
+        && names.contains(name)
+    {
+        let _ = writeln!(
+            text,
+            "    let {name} = textureSampleLevel(peelnet_around, peelnet_bilinear, position.xy / ({every}.0 * vec2f(textureDimensions(peelnet_around))), 0.0);"
+        );
     }
     if model.wgsl.contains("fn peelnet_noise(") {
         text.push_str("    let noise = peelnet_noise(vec2u(peelnet_at));\n");
@@ -108,6 +133,18 @@ fn peelnet_output(position: vec4f, sample_index: u32, color: vec4f) -> PeelnetOu
     );
     for (number, pass) in passes.iter().enumerate() {
         let _ = writeln!(text, "@if({}) {{", pass_define(number));
+        if pass.is_small() {
+            let every = pass.every;
+            let _ = writeln!(
+                text,
+                "    // What hides a fragment is at the pixel that is looked at.
+    let peelnet_looked = min({every} * peelnet_at + {}, vec2i(textureDimensions(peelnet_depth)) - 1);
+    if position.z < textureLoad(peelnet_depth, peelnet_looked, 0) {{
+        discard;
+    }}",
+                every / 2
+            );
+        }
         text.push_str(&reads(model, &pass.reads));
         if let Some(compute) = &pass.compute {
             let _ = writeln!(text, "    {compute}");
@@ -119,6 +156,38 @@ fn peelnet_output(position: vec4f, sample_index: u32, color: vec4f) -> PeelnetOu
     }
     text.push_str("    return peelnet_out;\n}\n");
     text
+}
+
+/// The full-screen shader of the small texture: each texel from the nine around it.
+pub(crate) fn around_text(model: &PeelnetModel) -> String {
+    let Some(around) = &model.description.around else {
+        return String::new();
+    };
+    let lines = around.pass.targets.iter().map(|target| {
+        let (name, (_, channels)) = (&target.name, type_of(target));
+        format!("            let {name} = textureLoad(peelnet_target_{name}, at, 0){channels};\n")
+    });
+    format!(
+        "{}
+@fragment
+fn peelnet_texel(@builtin(position) position: vec4f) -> @location(0) vec4f {{
+    let last = vec2i(textureDimensions(peelnet_target_{})) - 1;
+    var sum = mat4x4f();
+    for (var y = -1; y <= 1; y++) {{
+        for (var x = -1; x <= 1; x++) {{
+            let at = clamp(vec2i(position.xy) + vec2i(x, y), vec2i(0), last);
+{}            sum += {};
+        }}
+    }}
+    return {};
+}}
+",
+        network_text(model, 0),
+        around.pass.targets[0].name,
+        lines.collect::<String>(),
+        around.sum,
+        around.write
+    )
 }
 
 /// The full-screen shader that composites a pixel's sums, or a sample's. Its answer is premultiplied by coverage, for blending over the opaque scene.

@@ -1,8 +1,9 @@
 //! What a view with learned transparency has on the GPU.
 
 use crate::{
+    model::{Around, Target},
     phase::WEIGHED,
-    pipelines::{LearnedPipelines, Setup, layout_of},
+    pipelines::{LearnedPipelines, Reads, Setup},
 };
 use bevy::{
     core_pipeline::core_3d::Transparent3d,
@@ -17,12 +18,14 @@ use bevy::{
         renderer::{RenderDevice, RenderQueue},
         sync_world::MainEntity,
         texture::{CachedTexture, TextureCache},
-        view::{ExtractedView, RetainedViewEntity},
+        view::{ExtractedView, RetainedViewEntity, ViewDepthStencilTexture},
     },
 };
 
 #[derive(Default)]
 pub(crate) struct LearnedView {
+    /// Of the small texture, where there is one.
+    pub around: Option<CachedRenderPipelineId>,
     pub resolve: Option<CachedRenderPipelineId>,
     /// Near and far of the weighed surfaces, and what both are counted from.
     pub depths: Vec4,
@@ -40,6 +43,8 @@ pub(crate) struct Targets {
     pub textures: HashMap<String, CachedTexture>,
     /// Of each pass: its bind group, and the weighed items with its pipelines.
     pub passes: Vec<(BindGroup, SortedRenderPhase<Transparent3d>)>,
+    /// Of the pass that makes the small texture, where there is one.
+    pub around_group: Option<BindGroup>,
     pub resolve_group: BindGroup,
 }
 
@@ -53,14 +58,25 @@ pub(crate) fn prepare_views(
     mut phases: ResMut<ViewSortedRenderPhases<Transparent3d>>,
     pipelines: Res<LearnedPipelines>,
     draw_functions: Res<DrawFunctions<Transparent3d>>,
-    cameras: Query<(&ExtractedView, &ExtractedCamera, &Msaa)>,
+    cameras: Query<(
+        &ExtractedView,
+        &ExtractedCamera,
+        &Msaa,
+        &ViewDepthStencilTexture,
+    )>,
     cache: Res<PipelineCache>,
     device: Res<RenderDevice>,
     queue: Res<RenderQueue>,
     mut textures: ResMut<TextureCache>,
 ) {
     let draw_material = draw_functions.read().id::<DrawMaterial>();
-    for (extracted, camera, msaa) in &cameras {
+    let bilinear = device.create_sampler(&SamplerDescriptor {
+        label: Some("peelnet_sampler"),
+        mag_filter: FilterMode::Linear,
+        min_filter: FilterMode::Linear,
+        ..default()
+    });
+    for (extracted, camera, msaa, depth) in &cameras {
         let id = extracted.retained_view_entity;
         let (Some(view), Some(phase)) = (views.0.get_mut(&id), phases.get_mut(&id)) else {
             continue;
@@ -78,34 +94,56 @@ pub(crate) fn prepare_views(
         view.uniform.set(view.depths);
         view.uniform.write_buffer(&device, &queue);
         let samples = msaa.samples();
-        let made = setup.model.targets().map(|target| {
+        let mut texture = |name: &String, format, every, sample_count| {
             let descriptor = TextureDescriptor {
                 label: Some("peelnet_target"),
-                size: size.to_extents(),
+                size: size.map(|n| n.div_ceil(every)).to_extents(),
                 mip_level_count: 1,
-                sample_count: samples,
+                sample_count,
                 dimension: TextureDimension::D2,
-                format: target.format,
+                format,
                 usage: TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING,
                 view_formats: &[],
             };
-            (target.name.clone(), textures.get(&device, descriptor))
-        });
-        let made: HashMap<String, CachedTexture> = made.collect();
-        let group = |reads: &Vec<String>| {
-            let depths = view.uniform.binding().map(|resource| BindGroupEntry {
-                binding: 0,
-                resource,
-            });
-            let read = reads.iter().map(|target| BindGroupEntry {
-                binding: setup.model.binding(target),
-                resource: BindingResource::TextureView(&made[target].default_view),
-            });
-            let entries: Vec<_> = depths.into_iter().chain(read).collect();
-            let layout = cache.get_bind_group_layout(&layout_of(&setup.model, reads, samples));
+            (name.clone(), textures.get(&device, descriptor))
+        };
+        let (model, description) = (&setup.model, &setup.model.description);
+        let mut made = HashMap::new();
+        for (Target { name, format, .. }, every) in model.targets() {
+            let samples = if every == 1 { samples } else { 1 };
+            made.extend([texture(name, *format, every, samples)]);
+        }
+        if let Some(Around {
+            name,
+            format,
+            every,
+            ..
+        }) = &description.around
+        {
+            made.extend([texture(name, *format, *every, 1)]);
+        }
+        let depth_view = depth
+            .texture()
+            .create_view(&TextureViewDescriptor::default());
+        let group = |reads: Reads<'_>| {
+            let entry = |binding, resource| BindGroupEntry { binding, resource };
+            let depths = view.uniform.binding().map(|range| entry(0, range));
+            let mut entries = Vec::from_iter(depths);
+            for read in &reads.names {
+                let texture = BindingResource::TextureView(&made[*read].default_view);
+                entries.push(entry(model.binding(read), texture));
+                if model.is_around(read) {
+                    let bilinear = BindingResource::Sampler(&bilinear);
+                    entries.push(entry(model.sampler_binding(), bilinear));
+                }
+            }
+            if reads.depth_samples.is_some() {
+                let depth = BindingResource::TextureView(&depth_view);
+                entries.push(entry(model.depth_binding(), depth));
+            }
+            let layout = cache.get_bind_group_layout(&reads.layout(model));
             device.create_bind_group("peelnet_bind_group", &layout, &entries)
         };
-        let description = &setup.model.description;
         let passes = description.passes.iter().enumerate().map(|(number, pass)| {
             let mut phase = SortedRenderPhase::default();
             phase.items.extend(view.items.iter().map(|(key, item)| {
@@ -117,11 +155,13 @@ pub(crate) fn prepare_views(
                 };
                 (*key, item)
             }));
-            (group(&pass.reads), phase)
+            (group(Reads::of_pass(pass, samples)), phase)
         });
+        let around = description.around.as_ref();
         view.targets = Some(Targets {
             passes: passes.collect(),
-            resolve_group: group(&description.resolve_reads),
+            around_group: around.map(|around| group(Reads::of_around(around))),
+            resolve_group: group(Reads::new(&description.resolve_reads, samples)),
             textures: made,
         });
     }

@@ -62,8 +62,8 @@ fn a_device_of_low_limits() {
     targets.max_color_attachments = 2;
     for (limits, says) in [
         (groups, "5 bind groups"),
-        (bytes, "24 bytes a sample"),
-        (targets, "3 targets"),
+        (bytes, "30 bytes a sample"),
+        (targets, "6 targets"),
     ] {
         let settings = WgpuSettings {
             constrained_limits: Some(limits),
