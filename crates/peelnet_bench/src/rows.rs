@@ -24,8 +24,13 @@ pub fn mean(values: impl IntoIterator<Item = f64>) -> Option<f64> {
 
 /// Geometric mean; `None` of nothing or if a value is not positive.
 pub fn geometric_mean(values: impl IntoIterator<Item = f64>) -> Option<f64> {
-    let logarithms = values.into_iter().map(|v| (v > 0.0).then(|| v.ln()));
-    mean(logarithms.collect::<Option<Vec<f64>>>()?).map(f64::exp)
+    let values: Vec<f64> = values.into_iter().collect();
+    let least = values.iter().copied().reduce(f64::min)?;
+    let most = values.iter().copied().reduce(f64::max)?;
+    let logarithms = values.iter().map(|v| v.ln());
+    // Rounding must not move a mean of equal values: one of [`EXACT_MSE`] is that of an exact method.
+    let mean = mean(logarithms)?.exp().clamp(least, most);
+    (least > 0.0).then_some(mean)
 }
 
 /// Each name once, in the order of the first.
@@ -220,6 +225,17 @@ pub(crate) mod tests {
             bytes_per_pixel: Some(10.0),
             ..Row::default()
         }
+    }
+
+    /// The logarithms of 7 to 14 equal errors of 1e-10 have a mean whose exponential is above that.
+    #[test]
+    fn a_mean_of_equal_values_is_that_value() {
+        for count in 1..50 {
+            let mean = geometric_mean(vec![EXACT_MSE; count]);
+            assert_eq!(mean, Some(EXACT_MSE), "{count}");
+        }
+        assert_eq!(geometric_mean([1.0, 0.0]), None);
+        assert_eq!(geometric_mean([]), None);
     }
 
     #[test]

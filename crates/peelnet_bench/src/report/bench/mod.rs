@@ -111,7 +111,7 @@ impl Results<Bench> {
             reasons += &format!(" {method} has no time: {why}.");
         }
         format!(
-            "{}\nErrors against `abuffer` in linear light over the whole frame, geometric means over scenes and views.{reasons} {}\n\n{}",
+            "{}\nErrors against `abuffer` in linear light over the whole frame, geometric means over scenes and views; one below 1e-10 counts as that.{reasons} {}\n\n{}",
             self.table().markdown(),
             self.credit(),
             self.times_by_scene().markdown(),
