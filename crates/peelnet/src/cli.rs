@@ -257,7 +257,7 @@ pub struct TrainArgs {
     #[arg(long, conflicts_with = "max_rows")]
     pub stream: bool,
     /// Rows in memory at once with --stream; the weights depend on it, because they depend on the order of the examples
-    #[arg(long, value_name = "N", requires = "stream", default_value_t = peelnet_train::DEFAULT_BUFFER_ROWS)]
+    #[arg(long, value_name = "N", requires = "stream", conflicts_with = "max_rows", default_value_t = peelnet_train::DEFAULT_BUFFER_ROWS)]
     pub buffer_rows: u64,
     /// What stays together when rows are set aside for testing: scenes (one scene alone is split by pixel), or pixels of all scenes alike
     #[arg(long, value_name = "BY", default_value = "scene", value_parser = one_of(SPLITS.to_vec()))]
@@ -335,11 +335,11 @@ pub struct RenderArgs {
     #[arg(long, value_name = "LAYER", conflicts_with_all = ["method", "model"])]
     pub highlight: Option<u32>,
     /// With --highlight: omit surfaces whose layer is not deeper than that of the surface in front, such as an object's far side
-    #[arg(long, requires = "highlight")]
+    #[arg(long, requires = "highlight", conflicts_with_all = ["method", "model", "samples"])]
     pub increasing: bool,
     /// With --highlight: which other surfaces are seen: those in front of it, which share half of the pixel, or all of them, by the formula
     /// of the ageing renderer (2018) as it is printed
-    #[arg(long, value_name = "FORMULA", default_value = "front", value_parser = one_of(LAYER_FORMULAS), requires = "highlight")]
+    #[arg(long, value_name = "FORMULA", default_value = "front", value_parser = one_of(LAYER_FORMULAS), requires = "highlight", conflicts_with_all = ["method", "model", "samples"])]
     pub layers: LayerFormula,
 }
 

@@ -52,6 +52,9 @@ const WRONG_USAGE: &str = "
     render two.toml --out a.png --method mboit4:bias=9
     render two.toml --out a.png --method mboit4:bias=0,bias=1
     render two.toml --out a.png --method wboit-eq9 --highlight 1
+    render two.toml --out a.png --method wboit-eq9 --increasing
+    render two.toml --out a.png --samples 4 --layers printed
+    train d --recipe small --max-rows 5 --buffer-rows 5 --out m.safetensors
     render two.toml --out a.png --increasing
     render two.toml --out a.png --layers printed
     render two.toml --out a.png --highlight 1 --layers ours
