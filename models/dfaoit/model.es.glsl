@@ -13,7 +13,7 @@
 // Input 7: front_r (1), 0.0 .. 1.0939434 in training.
 // Input 8: front_g (1), 0.0000017117674 .. 1.123691 in training.
 // Input 9: front_b (1), 0.000012647329 .. 1.1081027 in training.
-// Trained on 21565796 rows of boxes, cups, foliage, intersecting, opaque-mix, panes, sixteen-025, sixteen-050, sixteen-075, sixteen-085, sixteen-random-alpha, sixteen-random-color, smoke-100, smoke-30, synthetic (dataset f0e6c4a7cca08d560f99a5be9cbd1514bf8be352632a347602bf08363695fd29+eb0fb0725f43962450fda44a06f4c27ba969a523c02d556c7eebdda5833c5318).
+// Trained on boxes, cups, foliage, intersecting, opaque-mix, panes, sixteen-025, sixteen-050, sixteen-075, sixteen-085, sixteen-random-alpha, sixteen-random-color, smoke-100, smoke-30, synthetic, of a dataset of 21565796 rows (f0e6c4a7cca08d560f99a5be9cbd1514bf8be352632a347602bf08363695fd29+eb0fb0725f43962450fda44a06f4c27ba969a523c02d556c7eebdda5833c5318).
 // Loss: training 0.045197, validation 0.045930, test 0.045934.
 // Held-out error: not measured.
 //

@@ -108,7 +108,10 @@ fn provenance(model: &Model) -> [String; 3] {
     {
         let (hash, scenes) = (printable(hash), scenes.iter().map(|scene| printable(scene)));
         let scenes = names(scenes);
-        data = format!("Trained on {rows} rows of {scenes} (dataset {hash}).");
+        let most = meta.config["max_rows"].as_u64().filter(|most| most < rows);
+        let most = most.filter(|_| meta.config["buffer_rows"].is_null());
+        let most = most.map_or_else(String::new, |most| format!(", at most {most} of them"));
+        data = format!("Trained on {scenes}, of a dataset of {rows} rows{most} ({hash}).");
     }
     let losses = [
         ("training", meta.losses.train),

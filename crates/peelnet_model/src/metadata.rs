@@ -49,7 +49,7 @@ impl Input {
 pub struct DatasetRef {
     /// The dataset's hash; of several datasets, their hashes joined by `+`.
     pub hash: String,
-    /// Number of rows.
+    /// Number of rows, those among them that were set aside or left out for their number.
     pub rows: u64,
     /// Names of the scenes that were trained on.
     pub scenes: Vec<String>,

@@ -163,8 +163,12 @@ fn say(context: &Context<'_>, config: &Config, data: &TrainingData, out: &Path) 
         let split = data.split.iter();
         split.for_each(|split| console.message(split_text(split)));
     }
+    let aside = match config.held_out + config.validation > 0.0 {
+        true => " with those set aside",
+        false => "",
+    };
     console.message(format!(
-        "training recipe {} on {} of {}, {}",
+        "training recipe {} on {}{aside} of {}, {}",
         config.recipe,
         counted(data.rows(), "row"),
         data.source,
