@@ -1,7 +1,7 @@
 use super::{Context, bench::compared, command_line};
 use crate::cli::StressArgs;
 use crate::progress::Bar;
-use peelnet::Failure;
+use peelnet::{Failure, MethodSpec, Model};
 use peelnet_bench::report::Results;
 use peelnet_bench::{
     EvalError, Machine,
@@ -25,17 +25,19 @@ pub(super) fn run(context: &Context<'_>, args: &StressArgs) -> Result<(), Failur
     };
     let gpu = context.gpu()?;
     let own_only = !args.models.is_empty() && args.methods.is_none();
+    let own = args.models.iter().map(peelnet::load_model);
+    let own: Vec<Model> = own.collect::<Result<_, _>>()?;
     let all = || {
         let all = Subject::all_methods().into_iter();
         // A user's own network is checked alone.
-        all.filter(|m| !own_only || m.needs_model()).collect()
+        let is_own = |m: &MethodSpec| own.iter().any(|own| own.meta.recipe.method == m.name());
+        all.filter(|m| !own_only || is_own(m)).collect()
     };
     let named = args.methods.as_deref();
     let (compared, learned) = compared(context, &gpu, named, &args.models, all)?;
-    let own = &compared.models[..args.models.len()];
-    let is_checked = |name: &str| !own_only || own.iter().any(|m| m.meta.recipe.method == name);
-    let checked = compared.methods.iter().filter(|m| is_checked(m.name()));
-    let subjects: Vec<Subject> = checked
+    let subjects: Vec<Subject> = compared
+        .methods
+        .iter()
         .map(|method| {
             let mut networks = learned.iter().zip(&compared.models);
             let network = networks.find(|(l, _)| l.recipe.method == method.name());
