@@ -149,7 +149,7 @@ export class Stages {
 					const names = around.pass.targets.map( ( { name } ) => name );
 
 					result.then = this._around( model, native, isGlsl, 'sum', names, ( at ) => [ vec2( at ), ...names.map( ( name ) => textureLoad( small.get( name ), at ) ) ] );
-					written.set( around.name, texture( result.then.target.texture, pixel.sub( viewport.xy ).div( viewport.zw ) ) );
+					written.set( around.name, texture( result.then.target.texture, pixel.sub( viewport.xy ).div( viewport.zw ) ).level( 0 ) );
 
 				}
 
