@@ -69,10 +69,10 @@ impl Stacked<'_> {
 
     /// What a design's slabs are cut by here.
     pub(super) fn extent(&self, source: Source, of_design: Extent) -> Extent {
-        let found = match source {
+        let found: &[Extent] = match source {
             Source::Tiles => &self.view.tiles,
             Source::Boxes => &self.view.boxes,
-            Source::Pixel | Source::Ends | Source::Frame => &Vec::new(),
+            Source::Pixel | Source::Ends | Source::Frame => &[],
         };
         found.get(self.number).copied().unwrap_or(of_design)
     }

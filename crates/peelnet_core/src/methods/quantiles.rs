@@ -32,7 +32,7 @@ pub const BIN_LEVELS: f64 = 64.0;
 pub fn bins_of(fragments: &[Point], bins: usize) -> Vec<f64> {
     let mut all = vec![0.0; bins];
     for &(b, zeta, _) in fragments {
-        let place = (0.5 + 0.5 * zeta) * bins as f64 - 0.5;
+        let place = depth_of(zeta) * bins as f64 - 0.5;
         let place = place.clamp(0.0, bins as f64 - 1.0);
         // At least one: a bin with any fragment is not empty.
         let level = (BIN_LEVELS * b + 0.5).floor().max(1.0);
@@ -48,7 +48,7 @@ pub fn bins_of(fragments: &[Point], bins: usize) -> Vec<f64> {
 pub fn ends_of(zetas: impl IntoIterator<Item = f64>) -> [f64; 2] {
     let none = [TOP, 0.0f64];
     zetas.into_iter().fold(none, |[low, high], zeta| {
-        let level = TOP * (zeta * 0.5 + 0.5);
+        let level = TOP * depth_of(zeta);
         [low.min(level.floor()), high.max(level.ceil())]
     })
 }
@@ -107,7 +107,7 @@ impl Quantiles {
 
     /// As they are kept, in 8 bits.
     fn steps(&self) -> [u8; 4] {
-        self.0.map(|q| (q * 255.0 + 0.5) as u8)
+        self.0.map(|q| (q * TOP + 0.5) as u8)
     }
 }
 
@@ -198,7 +198,7 @@ impl Tiles {
             let of = self.quantiles.get(&tile).unwrap_or(&self.elsewhere);
             all.iter_mut()
                 .zip(of)
-                .for_each(|(sum, &q)| *sum += weight * (f64::from(q) / 255.0));
+                .for_each(|(sum, &q)| *sum += weight * (f64::from(q) / TOP));
         }
         Quantiles(all)
     }

@@ -126,26 +126,24 @@ impl NetworkInputs for SlabInputs {
             let all = [&mut a, &mut firsts, &mut near, &mut far].into_iter();
             all.zip(slab).for_each(|(all, x)| all.push(x as f32));
         }
-        let mut targets = Vec::new();
         match self.layout() {
             Layout::Small => {
                 a.push(firsts.remove(0));
                 near.push(far[0]);
-                targets.extend([("absorbances", a), ("nearest", near), ("firsts", firsts)]);
+                vec![("absorbances", a), ("nearest", near), ("firsts", firsts)]
             }
             Layout::Medium => {
                 let all = [&mut a, &mut near, &mut far].into_iter();
                 all.zip(firsts).for_each(|(all, first)| all.push(first));
-                targets.extend([("absorbances", a), ("nearest", near), ("farthest", far)]);
+                vec![("absorbances", a), ("nearest", near), ("farthest", far)]
             }
-            Layout::Large => targets.extend([
+            Layout::Large => vec![
                 ("absorbances", a),
                 ("nearest", near),
                 ("farthest", far),
                 ("firsts", firsts),
-            ]),
+            ],
         }
-        targets
     }
 }
 
@@ -153,8 +151,6 @@ impl NetworkInputs for SlabInputs {
 pub const fn slab_surroundings(layout: Layout) -> &'static Surroundings {
     [&SMALL, &MEDIUM, &LARGE][layout as usize]
 }
-
-static QUANTILES_OF_SLABS: SmallTexture = QUANTILES;
 
 const fn modules(statistics: &'static str) -> [&'static str; 9] {
     [
@@ -174,7 +170,7 @@ static SMALL: Surroundings = Surroundings {
     parameters: "between: PeelnetBetween",
     modules: &modules("learned::slabs_small"),
     before: ZETA_AMONG_QUANTILES,
-    around: Some(&QUANTILES_OF_SLABS),
+    around: Some(&QUANTILES),
     passes: &passes(
         &[ABSORBANCES, NEAREST, sum("firsts", "rg16float", "s.firsts")],
         &["quantiles", "absorbances", "nearest", "firsts"],

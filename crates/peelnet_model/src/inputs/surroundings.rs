@@ -226,7 +226,7 @@ pub(super) const fn weight(call: &'static str) -> Option<Value> {
 }
 
 /// Quantiles of what is seen around a pixel.
-pub(super) const QUANTILES: SmallTexture = SmallTexture {
+pub(super) static QUANTILES: SmallTexture = SmallTexture {
     name: "quantiles",
     format: "rgba8unorm",
     every: TILE,
