@@ -76,6 +76,9 @@ pub struct Row {
 /// Characters of the times of a frame's passes: of hundreds of them.
 const MOST_OF_PASSES: usize = 1 << 14;
 
+/// Methods, and scenes.
+const MOST_NAMES: usize = 1 << 10;
+
 /// Pairs of a method and a scene.
 const MOST_CELLS: usize = 1 << 18;
 
@@ -112,10 +115,10 @@ pub(crate) fn checked<'de, D: Deserializer<'de>>(rows: D) -> Result<Vec<Row>, D:
     let rows = Vec::<Row>::deserialize(rows)?;
     let methods = rows.iter().map(|r| &r.method).collect::<HashSet<_>>().len();
     let scenes = rows.iter().map(|r| &r.scene).collect::<HashSet<_>>().len();
-    // A report has a cell for each.
-    if methods * scenes > MOST_CELLS {
+    // A report has a cell for each, and takes time by the square of either.
+    if methods.max(scenes) > MOST_NAMES || methods * scenes > MOST_CELLS {
         let why = format!(
-            "{methods} methods and {scenes} scenes, of which at most {MOST_CELLS} pairs are read"
+            "{methods} methods and {scenes} scenes, of which at most {MOST_NAMES} of each and {MOST_CELLS} pairs are read"
         );
         return Err(D::Error::custom(why));
     }
@@ -379,5 +382,36 @@ impl Series {
 impl fmt::Display for Series {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.pad(["fragments", "pixels", "triangles"][*self as usize])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Reports have a cell for each pair, and take time by the square of either number.
+    #[test]
+    fn methods_and_scenes_are_bounded() {
+        let read = |methods: usize, scenes: usize| {
+            let pairs = (0..methods.max(scenes)).map(|k| Row {
+                method: format!("m{}", k % methods),
+                scene: format!("s{}", k % scenes),
+                ..Row::default()
+            });
+            let bench = Bench {
+                rows: pairs.collect(),
+                ..Bench::default()
+            };
+            let text = serde_json::to_string(&bench).expect("serialises");
+            serde_json::from_str::<Bench>(&text).map_err(|e| e.to_string())
+        };
+        for (methods, scenes) in [(1024, 1), (1, 1024), (256, 1024)] {
+            assert!(read(methods, scenes).is_ok(), "{methods} {scenes}");
+        }
+        for (methods, scenes) in [(1025, 1), (1, 1025), (1024, 257)] {
+            let e = read(methods, scenes).expect_err("too many");
+            let words = format!("{methods} methods and {scenes} scenes");
+            assert!(e.contains(&words), "{e}");
+        }
     }
 }

@@ -112,7 +112,8 @@ impl Table {
 
 /// Text as one line of Markdown, in which it starts no cell and no element.
 pub(crate) fn markdown(text: &str) -> String {
-    one_line(text).replace('|', "\\|").replace('<', "&lt;")
+    let cell = one_line(text).replace('|', "\\|");
+    cell.replace('<', "&lt;").replace('[', "&#91;")
 }
 
 /// A scene's name in a table, marked where a learned method was trained on it.
@@ -148,6 +149,14 @@ mod tests {
         assert_eq!(table.plain(), "name   ms\n<a|b>   1\n");
     }
 
+    /// Neither a link nor a picture, also behind a backslash.
+    #[test]
+    fn a_cell_is_no_element_of_markdown() {
+        for (text, escaped) in [("![a](b)", "!&#91;a](b)"), (r"\[a\](b)", r"\&#91;a\](b)")] {
+            assert_eq!(markdown(text), escaped);
+        }
+    }
+
     #[test]
     fn a_cell_may_be_wider_than_a_width_of_the_format_language() {
         let table = Table::new(["a", "b"], [vec!["x".repeat(70_000), "1".to_owned()]]);
@@ -162,10 +171,10 @@ mod tests {
     /// A cell cannot end its row, nor move a terminal's cursor.
     #[test]
     fn cells_stay_cells() {
-        let table = Table::new(["a\nb"], [vec!["\u{1b}[2J\r\n".to_owned()]]);
+        let table = Table::new(["a\nb"], [vec!["\u{1b}&#91;2J\r\n".to_owned()]]);
         for text in [table.plain(), table.markdown()] {
             assert!(text.contains(r"a\u{a}b"), "{text}");
-            assert!(text.contains(r"\u{1b}[2J\u{d}\u{a}"), "{text}");
+            assert!(text.contains(r"\u{1b}&#91;2J\u{d}\u{a}"), "{text}");
         }
         assert_eq!(table.plain().lines().count(), 2);
     }
