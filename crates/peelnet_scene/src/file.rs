@@ -23,8 +23,9 @@ use crate::{
 use glam::Vec3;
 use loader::Loader;
 use peelnet_core::files::{MAX_SHOWN, check_name};
-use raw::RawScene;
+use raw::{RawChange, RawScene};
 use std::{
+    collections::BTreeSet,
     io,
     path::{Path, PathBuf},
 };
@@ -217,6 +218,13 @@ fn assemble(raw: RawScene, mut loader: Loader<'_>, time: Option<f32>) -> Result<
     if !raw.timeline.is_empty() {
         loader.files.hash_value(&snapshot.time.to_le_bytes());
     }
+    // Other states show them: no command that draws the scene may replace them.
+    let changes = raw.timeline.iter().flat_map(|state| &state.object);
+    let named: BTreeSet<PathBuf> = changes
+        .flat_map(RawChange::files)
+        .map(|file| loader.beside(file))
+        .collect();
+    loader.files.used.extend(named);
     let timeline = raw.timeline.into_iter().map(|s| State {
         time: s.time,
         label: s.label,

@@ -127,15 +127,19 @@ impl Pattern {
     }
 
     fn grid(&self, period: u32, channel: u32) -> Grid {
-        let number = |i: u32| {
-            // By a hash, not by a generator: a node's number must not depend on the order.
-            let hash = pixel_hash(self.seed, channel, i % period, i / period);
-            hash as f32 / u32::MAX as f32
-        };
-        Grid {
+        let (seed, texels) = (self.seed, self.size * self.size);
+        let mut grid = Grid {
+            seed,
+            channel,
             period,
-            numbers: (0..period * period).into_par_iter().map(number).collect(),
+            numbers: Vec::new(),
+        };
+        // Of more nodes than texels, few are asked for.
+        if period * period <= texels {
+            let node = |i: u32| grid.number([i % period, i / period]);
+            grid.numbers = (0..period * period).into_par_iter().map(node).collect();
         }
+        grid
     }
 
     /// The texture that a key of a material makes of it, whose values are in range.
@@ -182,14 +186,24 @@ impl Pattern {
 
 /// Random numbers of 0 … 1 at the nodes of a grid that repeats after `period` of them.
 struct Grid {
+    seed: u32,
+    channel: u32,
     period: u32,
+    /// Of all nodes, or none.
     numbers: Vec<f32>,
 }
 
 impl Grid {
+    /// By a hash, not by a generator: a node's number must not depend on the order.
+    fn number(&self, [x, y]: [u32; 2]) -> f32 {
+        pixel_hash(self.seed, self.channel, x, y) as f32 / u32::MAX as f32
+    }
+
     fn at(&self, node: IVec2) -> f32 {
-        let [x, y] = node.rem_euclid(IVec2::splat(self.period as i32)).to_array();
-        self.numbers[y as usize * self.period as usize + x as usize]
+        let node = node.rem_euclid(IVec2::splat(self.period as i32));
+        let [x, y] = node.to_array().map(|k| k as u32);
+        let known = self.numbers.get((y * self.period + x) as usize);
+        known.copied().unwrap_or_else(|| self.number([x, y]))
     }
 
     fn noise(&self, place: Vec2) -> f32 {

@@ -44,7 +44,7 @@ impl<'a> Loader<'a> {
         self.value(&format!("{table}.{key}"), message)
     }
 
-    fn beside(&self, name: &Path) -> PathBuf {
+    pub fn beside(&self, name: &Path) -> PathBuf {
         self.path.parent().unwrap_or(Path::new(".")).join(name)
     }
 

@@ -95,11 +95,40 @@ pub(super) struct RawChange {
     pub material: RawMaterial,
 }
 
+impl RawChange {
+    /// The files that it names.
+    pub fn files(&self) -> impl Iterator<Item = &PathBuf> {
+        let m = &self.material;
+        let maps = [
+            &m.color_map,
+            &m.normal_map,
+            &m.metallic_roughness_map,
+            &m.specular_color_map,
+            &m.glossiness_map,
+            &m.specular_glossiness_map,
+            &m.occlusion_map,
+            &m.emissive_map,
+            &m.displacement_map,
+        ];
+        let maps = maps.into_iter().flatten().filter_map(Reference::file);
+        maps.chain(self.mesh.as_ref().and_then(Reference::file))
+    }
+}
+
 /// A path relative to the scene file, or a table that describes something generated.
 #[derive(Clone, Debug)]
 pub(crate) enum Reference<T> {
     File(PathBuf),
     Made(Box<T>),
+}
+
+impl<T> Reference<T> {
+    fn file(&self) -> Option<&PathBuf> {
+        match self {
+            Self::File(path) => Some(path),
+            Self::Made(_) => None,
+        }
+    }
 }
 
 /// A mesh: a path, or a table with `shape = …`.

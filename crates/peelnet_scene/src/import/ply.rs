@@ -7,7 +7,7 @@ use super::{
     obj::BRIGHT,
     ply_elements::{ALPHA, BLUE, Face, GREEN, INDICES, RED, Skipped, U, Vertex},
     polygons::{Triangulator, strip},
-    surface::{Fault, fault_of, in_file},
+    surface::{Fault, fault_of, in_file, warn_of_rest},
 };
 use crate::{budget::Budget, files::Files, mesh::Mesh};
 use glam::{DVec3, Vec2, Vec3};
@@ -37,6 +37,10 @@ pub(super) fn read(path: &Path, bytes: &[u8], files: &mut Files<'_>) -> Result<M
     let header = Parser::<Skipped>::new().read_header(&mut input);
     let header = header.map_err(|e| fault("header", &e, true))?;
     check_header(&header, &bytes[..head], (bytes.len() - head) as u64)?;
+    let more_lines = match is_text {
+        true => check_lines(&header, &bytes, head)?,
+        false => 0,
+    };
     let count = |name: &str| header.elements.get(name).map_or(0, |e| e.count as u64);
     let (vertices, faces) = (count("vertex"), count("face") + count("tristrips"));
     if faces == 0 {
@@ -90,6 +94,11 @@ pub(super) fn read(path: &Path, bytes: &[u8], files: &mut Files<'_>) -> Result<M
     if reader.is_bright {
         files.warn(path, BRIGHT);
     }
+    let (rest, unit) = match is_text {
+        true => (more_lines, "line"),
+        false => (input.get_ref().len() as u64, "byte"),
+    };
+    warn_of_rest(files, path, rest, unit, "element");
     if short_faces > 0 {
         let count = counted(short_faces, "face");
         files.warn(path, &(count + " of fewer than 3 vertices left out"));
@@ -188,6 +197,42 @@ fn check_header(header: &Header, head: &[u8], held: u64) -> Result<(), Fault> {
         }
     }
     Ok(())
+}
+
+/// Checks that no line has more values than its element, as the crate drops them; returns how many lines follow the last element.
+fn check_lines(header: &Header, bytes: &[u8], head: usize) -> Result<u64, Fault> {
+    let text = String::from_utf8_lossy(bytes);
+    let before = bytes[..head].iter().filter(|b| **b == b'\n').count() + 1;
+    let mut lines = text.lines().zip(1..).skip(before);
+    for element in header.elements.values() {
+        // Without properties it has no lines.
+        let count = match element.properties.is_empty() {
+            true => 0,
+            false => element.count,
+        };
+        for (line, i) in lines.by_ref().take(count) {
+            let mut words = line.split_whitespace();
+            for property in element.properties.values() {
+                let word = words.next();
+                if let PropertyType::List(..) = property.data_type {
+                    // What is no count is an error of the crate.
+                    let length = word.and_then(|word| word.parse().ok());
+                    words
+                        .by_ref()
+                        .take(length.unwrap_or(usize::MAX))
+                        .for_each(drop);
+                }
+            }
+            if words.next().is_some() {
+                let name = printable(&element.name);
+                let message = format!(
+                    "'{name}' has more values here than its properties take; repair the line, or export the mesh again"
+                );
+                return Err((Some(i), message));
+            }
+        }
+    }
+    Ok(lines.count() as u64)
 }
 
 /// The fewest bytes that a property takes.

@@ -3,7 +3,7 @@
 //! Read here, not by a crate: `stl_io` and its like stop after the first solid of a file without a word, and take a binary file whose header
 //! begins with `solid` for text, as many programs write it.
 
-use super::surface::{Fault, fault_of, in_file};
+use super::surface::{Fault, fault_of, in_file, warn_of_rest};
 use crate::{
     files::Files,
     mesh::{Mesh, area_of, key_of},
@@ -44,10 +44,7 @@ pub(super) fn read(path: &Path, bytes: &[u8], files: &mut Files<'_>) -> Result<M
             counted(needed, "byte"),
         )));
     }
-    if needed < held {
-        let more = counted(held - needed, "byte");
-        files.warn(path, &(more + " behind its last triangle are not read"));
-    }
+    warn_of_rest(files, path, held - needed, "byte", "triangle");
     files.budget.take_mesh(count, 0).map_err(in_file)?;
     let mut soup = Soup::default();
     let facets = &bytes[HEADER + COUNT..needed as usize];

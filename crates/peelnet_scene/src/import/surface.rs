@@ -42,6 +42,14 @@ pub(super) fn in_file(message: impl Into<String>) -> Fault {
     (None, message.into())
 }
 
+/// Warns of bytes or lines that a file's own counts leave out.
+pub(super) fn warn_of_rest(files: &mut Files<'_>, path: &Path, rest: u64, unit: &str, last: &str) {
+    if rest > 0 {
+        let rest = counted(rest, unit);
+        files.warn(path, &format!("not read: {rest} behind its last {last}"));
+    }
+}
+
 pub(super) fn fault_of(position: Vec3) -> Option<String> {
     if !position.is_finite() {
         return Some("is not finite".into());

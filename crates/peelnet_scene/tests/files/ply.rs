@@ -73,6 +73,21 @@ fn text_and_both_orders_of_bytes() {
     }
 }
 
+/// What the header's counts leave out is warned of.
+#[test]
+fn what_stands_behind_the_last_element_is_warned_of() {
+    let text = square_text() + "3 0 1 2\n\n3 0 2 3\n";
+    let binary = [&square_binary(true)[..], &[0]].concat();
+    for (bytes, words) in [
+        (text.as_bytes(), "not read: 2 lines behind its last element"),
+        (&binary, "not read: 1 byte behind its last element"),
+    ] {
+        let (m, warnings, _) = load(bytes).unwrap();
+        assert_eq!(m.triangles.len(), 2);
+        assert_says(&warnings.join("\n"), words);
+    }
+}
+
 /// Floating-point colours are linear; an opacity makes the surface blend, unless it is 0 all over.
 #[test]
 fn colours_and_opacity_of_vertices() {
@@ -185,6 +200,9 @@ element face 1 => element face 0 => 4 points & point cloud & reconstruct
 4 0 1 2 3 => 4 0 1 2 4 => face 0 & index 4 & 4 vertices
 4 0 1 2 3 => 4 0 1 2 -1 => face 0 & index -1
 4 0 1 2 3 => 9 0 1 2 3 => a.ply:19 & 'face'
+4 0 1 2 3 => 3 0 1 2 3 => a.ply:19 & 'face' & more values
+0 1 0 255 188 0 255 => 0 1 0 255 188 0 255 7 => a.ply:18 & 'vertex' & more values
+element vertex 4 => element vertex 3 => a.ply:18 & 'face' & more values
 4 0 1 2 3 => 3 0 1 1 => no triangle with an area
 ply => obj => a.ply:1 & begin with 'ply'
 end_header => end => end_header & cut off

@@ -225,12 +225,23 @@ fn radiance_and_names() {
     assert_refused(load_text_at(&long, None), "name & 201 & 200");
 }
 
+/// A pattern takes time by its texels, not by its cells: with all nodes of their grids, these would take minutes.
+#[test]
+fn small_patterns_of_many_cells_are_made_at_once() {
+    let object = |seed: usize| {
+        let map = format!("{{ pattern = 'noise', cells = 256, size = 4, seed = {seed} }}");
+        format!("[[object]]\nmesh = {{ shape = 'quad' }}\nmaterial = {{ color_map = {map} }}\n")
+    };
+    let scene = load(&(0..1000).map(object).collect::<String>()).unwrap();
+    assert_eq!(scene.objects.len(), 1000);
+}
+
 /// Numbers are interpolated between states; textures and meshes are those of the state before; what a state does not name stays as it was.
 #[test]
 fn a_scene_ages() {
     let object = "[[object]]\nname = 'pot'\nmesh = { shape = 'sphere' }\nmaterial = { color = [1, 0, 0], alpha = 0.2 }\n";
     let states = "[[timeline]]\ntime = 0\nlabel = 'new'\n\
-         [[timeline]]\ntime = 10\n[[timeline.object]]\nname = 'pot'\nmaterial = { alpha = 0.6, color_map = { pattern = 'noise', size = 8 } }\n\
+         [[timeline]]\ntime = 10\n[[timeline.object]]\nname = 'pot'\nmaterial = { alpha = 0.6, color_map = { pattern = 'noise', size = 8 }, normal_map = 'white.png' }\n\
          [[timeline]]\ntime = 30\n[[timeline.object]]\nname = 'pot'\nmesh = { shape = 'box' }\nmaterial = { color = [0, 0, 1] }\n";
     let at = |time| load_text_at(&format!("{CAMERA}{object}{states}"), time);
     for (time, alpha, blue, mapped, name) in [
@@ -251,6 +262,8 @@ fn a_scene_ages() {
     // Without a time it is the first state.
     let first = at(None).unwrap();
     assert_eq!((first.time, first.timeline[0].label.as_str()), (0.0, "new"));
+    // No command may replace what another state shows.
+    assert_eq!(first.files, ["s.toml", "white.png"].map(PathBuf::from));
     assert_refused(at(Some(31.0)), "from 0 to 30");
     let none = load_text_at(&format!("{CAMERA}{object}"), Some(1.0));
     assert_refused(none, "add [[timeline]]");
