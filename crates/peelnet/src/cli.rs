@@ -40,7 +40,7 @@ type OrAll<T> = Option<T>;
   peelnet recommend cups --budget-ms 30                 which method to use
 
 Results go to stdout, messages to stderr. Exit codes: 0 done, 1 failed, 2 wrong usage, 130 and 143 interrupted.
-An output replaces only a file of its own kind that may be written, any file with --force, never a link, a device or a pipe; - is stdout. A folder of a dataset replaces only a dataset.
+An output replaces only a file of its own kind that may be written, any file with --force, never a link (one to a folder on the way is followed), a device or a pipe; - is stdout. A folder of a dataset replaces only a dataset.
 NO_COLOR switches colours off."
 )]
 pub struct Cli {
@@ -198,7 +198,8 @@ pub struct ExtractArgs {
   peelnet seal d --json | jq .hash
 
 Parts are written by peelnet extract --shard and --resume; whoever writes the last one seals the dataset. This command does it where that
-writer was stopped, and reports what is missing or wrong, with the part and its worker. A sealed dataset stays as it is.")]
+writer was stopped, reads all parts of a folder again, and reports what is missing or wrong, with the part and its worker. A sealed dataset
+stays as it is.")]
 pub struct SealArgs {
     /// The dataset
     #[arg(value_name = "DATASET")]

@@ -2,6 +2,7 @@
 
 use crate::Failure;
 use peelnet_bench::front::BASE;
+use peelnet_core::files::check_outside_datasets;
 use peelnet_dataset::{DatasetError, create_object, is_remote, read_object};
 use peelnet_export::ExportError;
 use peelnet_model::{MAX_BYTES, Model, ModelError, Recipe};
@@ -56,6 +57,7 @@ pub fn check_model_place(path: &Path) -> Result<(), ModelError> {
     if !is_remote(path) {
         return Ok(());
     }
+    check_outside_datasets(path).map_err(|e| failed(path, WRITE, e))?;
     match read_object(path, MAX_BYTES) {
         Ok(None) => Ok(()),
         Ok(Some(_)) => Err(taken(path)),

@@ -139,8 +139,17 @@ const REFUSED: &str = "
     2 | render two.toml --out hard.png | --out hard.png
     2 | render reads.toml --out own.png | own.png & which a scene of this command reads
     2 | bench images.toml --methods wboit-eq9 --out ours | c.png & which a scene of this command reads
-    2 | train sound --out sound/_peelnet/manifest.json | --out
-    2 | train sound --out n --loss-curve sound/new.csv | --loss-curve
+    2 | render aged.toml --out own.png | own.png & which a scene of this command reads
+    2 | train sound --out sound/_peelnet/manifest.json | --out & lies in the dataset & sound; choose a place outside
+    2 | train sound --out n --loss-curve sound/new.csv | --loss-curve & lies in the dataset
+    1 | train sound --out file://DIR/sound/m | lies in the dataset
+    2 | render two.toml --out sound/a.png --force | --out sound/a.png: lies in the dataset
+    1 | extract two.toml --out sound/sub | sound/sub: lies in the dataset
+    1 | extract two.toml --out file://DIR/sound/sub | lies in the dataset
+    1 | extract two.toml --out sound/_peelnet/parts/zz --resume | lies in the dataset
+    1 | extract two.toml --out file:DIR/new | an address of a folder is file:///path
+    1 | train sound --out file:DIR/m | is file:///path
+    1 | render two.toml --out file:DIR/a.png | is no file of this machine
     2 | train sound --out n.svg --loss-curve n.svg | --loss-curve n.svg
     2 | train sound --out n --loss-curve n/loss.csv | --loss-curve n/loss.csv & on the way
     1 | extract two.toml --out kept | kept/fragments-00000-two-v0.parquet & is read-only
@@ -155,7 +164,7 @@ const REFUSED: &str = "
     1 | bench two.toml --out own-image | holiday.png & --force
 
     1 | extract orbit.toml --size 16x16 --out shard --shard 2/2 | size is 16x12 & worker test & use the same command
-    1 | extract orbit.toml --size 16x12 --out shard --seed 9 --resume | seed is 1 & use the same command
+    1 | extract orbit.toml --size 16x12 --out shard --seed 9 --resume | seed is 1 & use the same command & or leave out --resume
     2 | extract orbit.toml --size 16x12 --out shard --max-passes 2 --resume | no passes to limit & --peel dual
     1 | extract orbit.toml --size 16x12 --out shard --views 1 --resume | list of cameras is
     1 | extract two.toml --size 16x12 --out shard --resume | scene 0 is
@@ -282,6 +291,9 @@ fn folder() -> Folder {
     ] {
         folder.write(scene, format!("{SCENE}color_map = \"{texture}\"\n"));
     }
+    let states = "[[timeline]]\ntime = 0\n[[timeline]]\ntime = 9\n[[timeline.object]]\nname = 'a'\nmaterial = { color_map = 'own.png' }\n";
+    let aged = SCENE.replace("[[object]]", "[[object]]\nname = 'a'") + states;
+    folder.write("aged.toml", aged);
     std::fs::hard_link(folder.at("two.toml"), folder.at("hard.png")).unwrap();
     #[cfg(unix)]
     {
@@ -307,6 +319,7 @@ fn what_is_refused_says_why_and_changes_nothing() {
         (field(), field(), field())
     });
     for (code, line, words) in wrong.chain(refused) {
+        let line = &line.replace("DIR", &folder.path().to_string_lossy());
         let output = folder.command(line).output().unwrap();
         let text = String::from_utf8(output.stderr).unwrap();
         let found = output.status.code().map(|code| code.to_string());

@@ -9,7 +9,7 @@ use std::io::{ErrorKind, Write as _};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use peelnet_core::files::{Found, Unfinished};
+use peelnet_core::files::{Found, Unfinished, check_outside_datasets};
 
 use crate::error::DatasetError;
 use crate::hash::hash_file;
@@ -164,7 +164,12 @@ pub(crate) fn older_files(folder: &Path) -> Result<Vec<Found>, DatasetError> {
         let is_as_listed = |own: &(u64, String)| {
             own.0 == found.len() && hash_file(&path).is_ok_and(|hash| hash == *own)
         };
-        if !found.is_file() || !listed.get(&name).is_some_and(is_as_listed) {
+        let own = listed.get(&name);
+        if own.is_none() && part_of_file(&name).is_some() && folder.join(PLAN).exists() {
+            let reason = "has no record, so an extraction may have stopped here; go on with the same command and `--resume`, or move this file away";
+            return Err(DatasetError::invalid(&path, reason));
+        }
+        if !found.is_file() || !own.is_some_and(is_as_listed) {
             return Err(not_ours(folder, &name, None));
         }
         files.push(as_it_is.map_err(DatasetError::io(&path, "look at"))?);
@@ -209,6 +214,7 @@ pub fn replaces(folder: &Path, join: bool) -> Result<bool, DatasetError> {
 /// Prepares a folder for a writer: removes what writers that died left in it. Returns whether there is an older dataset that a writer of a
 /// whole one is going to replace; one that joins replaces nothing. A foreign file is an error, and for a whole dataset a living writer.
 pub(crate) fn prepare(folder: &Path, joins: bool) -> Result<bool, DatasetError> {
+    check_outside_datasets(folder).map_err(|e| DatasetError::invalid(folder, e.to_string()))?;
     let mut metas = [META, PARTS].into_iter();
     if let Some(link) = metas.find(|meta| folder.join(meta).is_symlink()) {
         return Err(not_ours(folder, link, None));

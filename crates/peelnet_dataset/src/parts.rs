@@ -10,9 +10,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::DatasetError;
 use crate::folder;
-use crate::manifest::{EXTRACT_AGAIN, Manifest, Part, read_json, to_json};
+use crate::manifest::{EXTRACT_AGAIN, FileEntry, Manifest, Part, read_json, to_json};
 use crate::plan::Plan;
-use crate::store::{FRAGMENTS, MANIFEST, PARTS, Store, open_store, store_at};
+use crate::store::{FRAGMENTS, Fetched, MANIFEST, PARTS, Store, open_store, store_at};
 
 /// Records that are read at a time: an object store answers each after tens of milliseconds.
 const READERS: usize = 32;
@@ -92,15 +92,16 @@ pub(crate) fn recorded(store: &dyn Store, plan: &Plan) -> Result<BTreeSet<u32>, 
 }
 
 /// Seals a dataset of which every part is finished: checks the parts and writes the manifest. A dataset that is sealed stays as it is, and
-/// its manifest is returned. The bytes of the manifest do not depend on who seals, or when.
+/// its manifest is returned. The bytes of the manifest do not depend on who seals, or when. Files of a folder are read and hashed; an object
+/// store, in which nothing is replaced, is asked for their lengths alone.
 ///
 /// # Errors
-/// If parts are missing; an error that names part and worker if a part is of another plan, or a file of it is missing, has another
-/// length, or is there twice.
+/// If parts are missing; an error that names part and worker if a part is of another plan, or a file of it is missing, was changed, or is
+/// there twice.
 pub fn seal(path: impl AsRef<Path>) -> Result<Manifest, DatasetError> {
     let store = open_store(path.as_ref())?;
     let plan = Plan::read(&*store)?.ok_or_else(|| no_manifest(path.as_ref()))?;
-    let Some(manifest) = whole(&*store, &plan)? else {
+    let Some(manifest) = whole(&*store, &plan, true)? else {
         return Err(unsealed(&*store, &plan)?);
     };
     if let Some(folder) = store.folder() {
@@ -142,8 +143,27 @@ pub fn unsealed_parts(path: impl AsRef<Path>) -> Result<Option<(u32, u32)>, Data
     }
 }
 
-/// Writes the manifest if every part is there and it is not, and returns it; `None` if parts are missing.
-pub(crate) fn whole(store: &dyn Store, plan: &Plan) -> Result<Option<Manifest>, DatasetError> {
+/// Writes the manifest if every part is there and it is not, and returns it; `None` if parts are missing. Where this is asked for, files of a
+/// folder are hashed.
+pub(crate) fn whole(
+    store: &dyn Store,
+    plan: &Plan,
+    hashes: bool,
+) -> Result<Option<Manifest>, DatasetError> {
+    let check = |manifest: &Manifest| {
+        check_files(store, manifest, true)?;
+        if !hashes || store.folder().is_none() {
+            return Ok(());
+        }
+        let files = manifest
+            .parts
+            .iter()
+            .flat_map(|p| p.files.iter().map(|f| (p.index, f)));
+        for (index, file) in files {
+            check_hash(store, index, file, &store.fetch(&file.name)?)?;
+        }
+        Ok(())
+    };
     let wrong = |name: &str, reason: &str| {
         let reason = format!("{reason}; {EXTRACT_AGAIN}");
         Err(DatasetError::invalid(&store.shown(name), reason))
@@ -152,7 +172,7 @@ pub(crate) fn whole(store: &dyn Store, plan: &Plan) -> Result<Option<Manifest>, 
         if !plan.agrees_with(&manifest) {
             return wrong(MANIFEST, "the manifest says other things than plan.json");
         }
-        check_files(store, &manifest, true)?;
+        check(&manifest)?;
         return Ok(Some(manifest));
     }
     let recorded = recorded(store, plan)?;
@@ -171,7 +191,7 @@ pub(crate) fn whole(store: &dyn Store, plan: &Plan) -> Result<Option<Manifest>, 
         return Ok(None);
     };
     let manifest = plan.manifest(parts);
-    check_files(store, &manifest, true)?;
+    check(&manifest)?;
     if let Err(reason) = manifest.check() {
         return wrong(PARTS, &reason);
     }
@@ -209,6 +229,22 @@ pub(crate) fn check_files(
             "no part of the dataset has this file, and readers of the whole folder would read its rows as well; move it away",
         )),
     }
+}
+
+/// Compares the hash of a part's file with the one that was recorded.
+pub(crate) fn check_hash(
+    store: &dyn Store,
+    index: u32,
+    file: &FileEntry,
+    fetched: &Fetched,
+) -> Result<(), DatasetError> {
+    let (_, found) = fetched.hash()?;
+    if found == file.sha256 {
+        return Ok(());
+    }
+    let expected = printable(&file.sha256);
+    let reason = format!("was cut or changed: sha256 {found} where {expected} was written");
+    Err(damaged(store, index, &file.name, &reason))
 }
 
 /// Whether a part of the manifest is as its writer recorded it, where there is a record. Files have hashes of their own.

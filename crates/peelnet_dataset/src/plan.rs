@@ -149,8 +149,13 @@ impl Plan {
         for (field, _) in mine.iter().chain(&theirs) {
             let (mine, theirs) = (value(&mine, field), value(&theirs, field));
             if mine != theirs {
+                // Also where a writer was killed that had begun to replace that dataset.
+                let instead = match self.header.resume {
+                    true => ", or leave out --resume to replace it",
+                    false => "",
+                };
                 let reason = format!(
-                    "the dataset there has another plan: its {field} is {theirs} (worker {}), and here (worker {}) it is {mine}; use the same command, version and adapter, or another folder",
+                    "the dataset there has another plan: its {field} is {theirs} (worker {}), and here (worker {}) it is {mine}; use the same command, version and adapter, or another folder{instead}",
                     there.header.worker, self.header.worker
                 );
                 return Err(DatasetError::invalid(store.path(), reason));

@@ -74,20 +74,7 @@ impl Dataset {
     /// Compares the hash of a part's file with the manifest's.
     fn verify_file(&self, k: usize, file: usize, fetched: &Fetched) -> Result<(), DatasetError> {
         let part = &self.manifest.parts[k];
-        let entry = &part.files[file];
-        let (_, found) = fetched.hash()?;
-        if found != entry.sha256 {
-            let reason = format!(
-                "was cut or changed: sha256 {found} where the manifest says {}",
-                peelnet_core::files::printable(&entry.sha256)
-            );
-            return Err(parts::damaged(
-                &*self.store,
-                part.index,
-                &entry.name,
-                &reason,
-            ));
-        }
+        parts::check_hash(&*self.store, part.index, &part.files[file], fetched)?;
         self.verified[k][file].store(true, Ordering::Relaxed);
         Ok(())
     }

@@ -16,13 +16,12 @@ use std::io::{Error, ErrorKind, Write as _};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+pub(crate) use peelnet_core::files::META;
 use peelnet_core::files::is_remote;
 
 use crate::error::DatasetError;
 use crate::hash::hash_file;
 
-/// The folder of everything that is not rows. Its name begins with `_`: readers of whole folders skip it.
-pub(crate) const META: &str = "_peelnet";
 /// What all writers agree on.
 pub(crate) const PLAN: &str = "_peelnet/plan.json";
 /// The manifest of a sealed dataset.
@@ -197,8 +196,8 @@ pub(crate) fn names_in(folder: &Path) -> Result<Vec<String>, DatasetError> {
 pub(crate) fn store_at(path: &Path) -> Result<Arc<dyn Store>, DatasetError> {
     let folder = match path.to_str().filter(|_| is_remote(path)) {
         None => path,
-        Some(url) => match url.strip_prefix("file://") {
-            Some(folder) if folder.starts_with('/') => Path::new(folder),
+        Some(url) => match url.strip_prefix("file:") {
+            Some(rest) if rest.starts_with("///") => Path::new(&rest[2..]),
             Some(_) => {
                 let reason = "an address of a folder is file:///path";
                 return Err(DatasetError::invalid(path, reason));

@@ -211,7 +211,9 @@ impl DatasetWriter {
         if self.replaces {
             parts.iter().try_for_each(|part| self.commit(part))?;
         }
-        if let Some(manifest) = parts::whole(&*self.store, &self.plan)? {
+        // What others wrote may have been changed since; of shards, each would read all of it.
+        let hashes = self.header.resume && self.header.shard.is_none();
+        if let Some(manifest) = parts::whole(&*self.store, &self.plan, hashes)? {
             return Ok(manifest);
         }
         let is_mine = |k: &&u32| self.header.shard.is_none_or(|s| s.contains(**k));

@@ -14,9 +14,9 @@ fn invalid(why: &str) -> std::io::Error {
 
 pub use input::{check_size, open, read, read_head};
 pub use output::{
-    Found, Kind, Moving, Outputs, Refused, STDOUT, Unfinished, check_file, check_is_folder,
-    folder_of, identity, is_remote, moving, remove_replaced, remove_unfinished, temporary,
-    to_stdout, write_whole,
+    Found, Kind, META, Moving, Outputs, Refused, STDOUT, Unfinished, check_file, check_is_folder,
+    check_outside_datasets, folder_of, identity, is_remote, moving, remove_replaced,
+    remove_unfinished, temporary, to_stdout, write_whole,
 };
 pub use text::{
     MAX_SHOWN, check_name, counted, error_line, hex, known_names, one_line, printable,

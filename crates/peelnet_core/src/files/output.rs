@@ -21,8 +21,11 @@ pub const STDOUT: &str = "-";
 /// Bytes at the beginning of a file by which its kind is known.
 const HEAD: u64 = 1 << 16;
 
-/// Whether a path is an address, `scheme://…`, such as one of an object store.
+/// Whether a path is an address, `scheme://…`, such as one of an object store; `file:/…` is a slip of the hand, and no file is called so.
 pub fn is_remote(path: &Path) -> bool {
+    if path.starts_with("file:") {
+        return true;
+    }
     let address = path.to_str().and_then(|text| text.split_once("://"));
     address.is_some_and(|(scheme, _)| {
         let mut letters = scheme.bytes();
@@ -87,6 +90,28 @@ fn resolve_folder(path: &Path) -> io::Result<PathBuf> {
         }
     }
     Ok(resolved)
+}
+
+/// The folder in each dataset of everything that is not rows. Its name begins with `_`: readers of whole folders skip it.
+pub const META: &str = "_peelnet";
+
+/// An error where a path leads into a dataset, which nothing but its own files may lie in. An address leads to no folder of this machine.
+///
+/// # Errors
+/// See above, and a path that cannot be looked at.
+pub fn check_outside_datasets(path: &Path) -> io::Result<()> {
+    let Ok(path) = local(path) else {
+        return Ok(());
+    };
+    let path = resolve(&absolute(path)?)?;
+    let mut folders = path.ancestors().skip(1);
+    let Some(dataset) = folders.find(|folder| folder.join(META).is_dir()) else {
+        return Ok(());
+    };
+    let dataset = shown(dataset);
+    Err(invalid(&format!(
+        "lies in the dataset {dataset}; choose a place outside of it"
+    )))
 }
 
 /// A regular file as it was found: equal as long as it is the same file with the same contents.
@@ -486,6 +511,7 @@ impl Outputs {
         let is_forced = self.force.1;
         let output = Output::look(path)?;
         if let Some(file) = &output.file {
+            check_outside_datasets(file).map_err(|e| Refused::new(true, e.to_string()))?;
             check_folder(folder_of(file))?;
         }
         if self.taken.iter().any(|taken| taken.excludes(&output)) {
@@ -606,7 +632,7 @@ impl Outputs {
 
     fn is_input(&self, output: &Output) -> bool {
         let (file, mut inputs) = (output.file.as_ref(), self.inputs.iter());
-        file.is_some_and(|file| inputs.any(|i| file.starts_with(i) || is_same(file, i)))
+        file.is_some_and(|file| inputs.any(|i| is_same(file, i)))
     }
 
     fn not_forced(&self, is_wrong_value: bool, why: &str) -> Refused {
@@ -756,7 +782,9 @@ mod tests {
         let parent = std::env::temp_dir().canonicalize().expect("stands");
         let dir = tempfile::tempdir_in(parent).expect("temporary folder");
         let at = |name: &str| dir.path().join(name);
-        fs::create_dir(at("far")).expect("creates");
+        for folder in ["far", "set/_peelnet"] {
+            fs::create_dir_all(at(folder)).expect("creates");
+        }
         for (name, text) in [
             ("note", "note: old"),
             ("input", "note: read"),
@@ -828,6 +856,10 @@ mod tests {
             ("DIR/near/../input", no, "this command reads that file"),
             ("file://DIR/input", no, "this command reads that file"),
             ("DIR/hard", no, "this command reads that file"),
+            ("DIR/set/new", no, "lies in the dataset"),
+            ("DIR/near/../set/_peelnet/new", no, "lies in the dataset"),
+            ("file://DIR/set/deep/new", no, "lies in the dataset"),
+            ("file:DIR/new", no, "no file of this machine"),
             ("DIR/far", no, "is a directory"),
             ("DIR/far/..", no, "is a directory"),
             ("DIR/mine/new", no, "cannot be written"),

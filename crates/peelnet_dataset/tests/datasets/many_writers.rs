@@ -160,6 +160,8 @@ fn files_without_a_record_are_taken_over_or_named() {
     let folder = temporary();
     killed(folder.path(), by("a", Format::Csv), &[0, 1]);
     fs::remove_file(folder.path().join("_peelnet/parts/00001.json")).unwrap();
+    let error = write(folder.path(), Format::Csv).unwrap_err();
+    has(&error, &[PART_1, "has no record", "--resume"]);
     assert!(resume(folder.path(), "b").unwrap().is_whole());
 
     let folder = temporary();
@@ -201,12 +203,22 @@ fn what_is_wrong_with_a_part_is_named() {
     fs::write(&file, &good[1..]).unwrap();
     let words = ["part 1 of worker node-a", PART_1, "bytes", "--resume"];
     sealing_fails(folder, &words);
+    // As long as it was.
+    let mut edited = good.clone();
+    edited[good.len() / 2] ^= 1;
+    let words = ["part 1 of worker node-a", PART_1, "sha256", "--resume"];
+    fs::write(&file, &edited).unwrap();
+    sealing_fails(folder, &words);
+    has(&resume(folder, "node-b").unwrap_err(), &words);
     fs::remove_file(&file).unwrap();
     sealing_fails(folder, &["part 1 of worker node-a", "is missing"]);
     // Before the seal, and behind it.
     for _ in 0..2 {
         assert!(resume(folder, "node-b").unwrap().is_whole());
         assert_eq!(fs::read(&file).unwrap(), good);
+        fs::write(&file, &edited).unwrap();
+        has(&seal(folder).unwrap_err(), &words);
+        has(&resume(folder, "node-b").unwrap_err(), &words);
         fs::remove_file(&file).unwrap();
         opening_fails(folder, &["part 1 of worker node-a", "is missing"]);
     }
