@@ -23,7 +23,7 @@ use crate::{
 use glam::Vec3;
 use loader::Loader;
 use peelnet_core::files::{MAX_SHOWN, check_name};
-use raw::{RawChange, RawScene};
+use raw::RawScene;
 use std::{
     collections::BTreeSet,
     io,
@@ -179,6 +179,8 @@ fn parse(path: &Path, files: &mut Files<'_>) -> Result<RawScene, SceneError> {
 fn assemble(raw: RawScene, mut loader: Loader<'_>, time: Option<f32>) -> Result<Scene, SceneError> {
     let views = views::views(&loader, &raw)?;
     let lights = views::lights(&loader, &raw.light)?;
+    // Whatever state is shown: no command that draws the scene may replace what another one shows.
+    let named: BTreeSet<PathBuf> = raw.files().map(|file| loader.beside(file)).collect();
     let snapshot = Snapshot::of(&mut loader, raw.object, &raw.timeline, time)?;
     if !(raw.transparency_scale > 0.0 && raw.transparency_scale <= 1.0) {
         let message = format!("{} must be above 0 and at most 1", raw.transparency_scale);
@@ -217,14 +219,8 @@ fn assemble(raw: RawScene, mut loader: Loader<'_>, time: Option<f32>) -> Result<
     }
     if !raw.timeline.is_empty() {
         loader.files.hash_value(&snapshot.time.to_le_bytes());
+        loader.files.used.extend(named);
     }
-    // Other states show them: no command that draws the scene may replace them.
-    let changes = raw.timeline.iter().flat_map(|state| &state.object);
-    let named: BTreeSet<PathBuf> = changes
-        .flat_map(RawChange::files)
-        .map(|file| loader.beside(file))
-        .collect();
-    loader.files.used.extend(named);
     let timeline = raw.timeline.into_iter().map(|s| State {
         time: s.time,
         label: s.label,

@@ -76,7 +76,7 @@ pub struct Scene {
     /// SHA-256 over the same files without the scene's name and whether it is held out: equal for scenes that show the same. Empty for a scene
     /// built in code.
     pub content: String,
-    /// The scene file and every file it reads, in order, then those that states of the timeline name; empty for a scene built in code.
+    /// The scene file and every file it reads, in order, then those that objects name in any state of the timeline; empty for a scene built in code.
     pub files: Vec<PathBuf>,
     /// Background radiance, linear RGB.
     pub background: [f32; 3],
