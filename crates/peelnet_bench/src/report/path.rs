@@ -24,8 +24,8 @@ const STRIP_WIDTH: u32 = 1200;
 const NOTE: &str = "JOD: just-objectionable differences by ColorVideoVDP, 10 for no visible difference. Error: mean absolute difference of \
     sRGB-encoded values from the exact image, 0–255. Change: mean absolute change of that difference from frame to frame, 0–255; an error \
     that is glued to a moving surface changes as well. Worst step: the largest change between two frames. Contour pairs: share of neighbouring \
-    pixels with the same transparent surfaces whose errors differ by more than 2 of 255; the mean of all frames that have such pixels. PSNR of 8-bit sRGB, ꟻLIP and MSE \
-    in linear light are means over the frames.";
+    pixels with the same transparent surfaces whose errors differ by more than 2 of 255; the mean of all frames that have such pixels. ꟻLIP and MSE in linear light are \
+    means over the frames; PSNR of 8-bit sRGB is that of the mean squared error of all.";
 
 impl Measurement for Along {
     const FILES: Files<Self> = &[

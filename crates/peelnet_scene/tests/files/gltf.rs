@@ -288,10 +288,12 @@ fn what_is_not_drawn_is_reported() {
     assert_says(&warnings, words);
     let document = changed(
         "textures = [{}] ; materials/0/normalTexture = {\"index\": 0, \"extensions\": {\"KHR_texture_transform\": {\"offset\": [0.5, 0]}}} ; \
-         materials/0/pbrMetallicRoughness/baseColorFactor = [5, -1, 1, 0.5] ; nodes/0/extensions = {\"FOO_bar\": {}}",
+         materials/0/pbrMetallicRoughness/baseColorFactor = [5, -1, 1, 0.5] ; nodes/0/extensions = {\"FOO_bar\": {}} ; \
+         accessors/2 = {\"componentType\": 5126, \"count\": 4, \"type\": \"VEC4\"} ; meshes/0/primitives/0/attributes/TANGENT = 2",
     );
     let warnings = load(&document).unwrap().warnings.join("\n");
-    let words = "a texture without an image & texture transforms of normal & extensions: FOO_bar & numbers outside of their range";
+    let words = "a texture without an image & texture transforms of normal & extensions: FOO_bar & numbers outside of their range & \
+        tangents of its own";
     assert_says(&warnings, words);
     let document = changed(
         "accessors/1/count = 5 ; nodes/1/matrix = [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,2] ; nodes/1/translation = [0, 0, 0] ; \

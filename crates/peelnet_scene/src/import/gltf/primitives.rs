@@ -122,6 +122,10 @@ impl Reader<'_, '_> {
         if primitive.morph_targets().len() > 0 {
             self.missing("morph targets", "", "");
         }
+        let has_tangents = primitive.get(&Semantic::Tangents).is_some();
+        if has_tangents && primitive.material().normal_texture().is_some() {
+            self.missing("tangents of its own (those of MikkTSpace are)", "", "");
+        }
         let vertices = primitive.get(&Semantic::Positions).map(|a| a.count());
         for (semantic, accessor) in primitive.attributes() {
             if Some(accessor.count()) != vertices {
