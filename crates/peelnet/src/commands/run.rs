@@ -11,7 +11,7 @@ use peelnet_bench::compare::{EXACT, Plan};
 use peelnet_bench::front;
 use peelnet_bench::report::{Results, Stage, ThesisRun, write_file};
 use peelnet_bench::{Machine, Partial, Row};
-use peelnet_core::files::{counted, shown};
+use peelnet_core::files::{counted, one_line, shown};
 use peelnet_dataset::{Dataset, SplitBy, Summary};
 use peelnet_model::{Model, Recipe};
 use peelnet_peel::ExtractOptions;
@@ -332,7 +332,7 @@ impl Run<'_> {
 
 fn text(results: &Results<ThesisRun>) -> String {
     let findings = results.measured.findings.iter();
-    let findings: String = findings.map(|f| format!("- {f}\n")).collect();
+    let findings: String = findings.map(|f| format!("- {}\n", one_line(f))).collect();
     format!(
         "{}\nmean squared error, 0–255 scale, against the exact image\n\n{findings}",
         results.table().plain()

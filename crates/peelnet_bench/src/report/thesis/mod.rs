@@ -6,7 +6,7 @@ mod page;
 use crate::chart::Svg;
 use crate::report::{
     Files, Measurement, Results, Table,
-    table::{number, scene_heading},
+    table::{markdown, number, scene_heading},
 };
 use crate::{
     Machine, Row,
@@ -172,16 +172,14 @@ impl Results<ThesisRun> {
     /// `table.md`: the table like the thesis's, the findings, and all methods.
     fn markdown(&self) -> String {
         let findings = self.measured.findings.iter();
-        let findings: String = findings.map(|f| format!("- {f}\n")).collect();
+        let findings: String = findings.map(|f| format!("- {}\n", markdown(f))).collect();
         format!(
             "# Weighted and learned weighted blending against the exact image\n\n{EXPLANATION}\n\n{}\n## Findings\n\n{findings}\n\
              ## All methods\n\nMean squared error (0–255) against `abuffer`, mean over the views.\n\n{}\n\
-             Measured on {} ({}) with `{}`.\n",
+             {}\n",
             self.table().markdown(),
             self.all_methods().markdown(),
-            self.machine.adapter,
-            self.machine.cpu,
-            self.command,
+            self.credit(),
         )
     }
 }

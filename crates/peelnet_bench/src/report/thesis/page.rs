@@ -199,5 +199,12 @@ mod tests {
             "| sixteen-025 | 10.00 | 4.00 | 4.00 | 5.00 | 0.50 | 1.25 | 15.96 → 11.79 | 0.74 |";
         assert!(tables.contains(line), "{tables}");
         assert_eq!(tables.matches("cups (trained on)").count(), 2, "{tables}");
+        // A name is one line without elements in the findings, too.
+        let rows = ["wboit-papakostas", "deep-thesis"].map(|m| row("x\n# <b>[y](z)", m, 1.0));
+        let tables = Results::of_rows(machine(), "peelnet run", rows.to_vec()).markdown();
+        assert!(
+            tables.contains(r"(x\u{a}# &lt;b>&#91;y](z) 1.00)"),
+            "{tables}"
+        );
     }
 }
