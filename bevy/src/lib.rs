@@ -116,6 +116,7 @@ impl Plugin for PeelnetPlugin {
             .init_gpu_resource::<device::Refusals>()
             .init_gpu_resource::<LearnedPipelines>()
             .init_gpu_resource::<SpecializedRenderPipelines<Setup>>()
+            .init_gpu_resource::<view::Bilinear>()
             .init_gpu_resource::<view::LearnedViews>()
             .add_systems(RenderStartup, report_new_device)
             .add_systems(

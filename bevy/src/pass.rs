@@ -77,10 +77,10 @@ pub(crate) fn learned_transparent_pass(
             ..default()
         });
         let span = diagnostics.pass_span(&mut drawing, format!("peelnet_{}", pass.name));
-        let corner = viewport.physical_position.as_vec2() / pass.every as f32;
+        let origin = viewport.physical_position.as_vec2() / pass.every as f32;
         let size = viewport.physical_size.as_vec2() / pass.every as f32;
         let Range { start, end } = viewport.depth;
-        drawing.set_viewport(corner.x, corner.y, size.x, size.y, start, end);
+        drawing.set_viewport(origin.x, origin.y, size.x, size.y, start, end);
         drawing.set_bind_group(GROUP, group, &[]);
         if let Err(problem) = phase.render(&mut drawing, world, entity) {
             error!("peelnet pass {:?}: {problem}", pass.name);

@@ -160,11 +160,14 @@ impl SpecializedRenderPipeline for Setup {
             resolve_reads,
             ..
         } = &self.model.description;
-        let (label, shader, reads, format, samples) = match (key, around) {
+        // The resolve's colour is multiplied by its coverage.
+        let premultiplied = Some(BlendState::PREMULTIPLIED_ALPHA_BLENDING);
+        let (label, shader, reads, blend, format, samples) = match (key, around) {
             (OverPixels::Around, Some(around)) => (
                 "peelnet_around_pipeline",
                 &self.around,
                 Reads::of_around(around),
+                None,
                 around.format,
                 1,
             ),
@@ -172,6 +175,7 @@ impl SpecializedRenderPipeline for Setup {
                 "peelnet_resolve_pipeline",
                 &self.resolve,
                 Reads::new(resolve_reads, samples),
+                premultiplied,
                 format,
                 samples,
             ),
@@ -187,9 +191,7 @@ impl SpecializedRenderPipeline for Setup {
                 shader_defs: multisampled.into_iter().collect(),
                 targets: vec![Some(ColorTargetState {
                     format,
-                    // The resolve's colour is multiplied by its coverage.
-                    blend: (key != OverPixels::Around)
-                        .then_some(BlendState::PREMULTIPLIED_ALPHA_BLENDING),
+                    blend,
                     write_mask: ColorWrites::ALL,
                 })],
                 ..default()

@@ -48,6 +48,22 @@ pub(crate) struct Targets {
     pub resolve_group: BindGroup,
 }
 
+/// What the small texture is read through.
+#[derive(Resource)]
+pub(crate) struct Bilinear(Sampler);
+
+impl FromWorld for Bilinear {
+    fn from_world(world: &mut World) -> Self {
+        let device = world.resource::<RenderDevice>();
+        Self(device.create_sampler(&SamplerDescriptor {
+            label: Some("peelnet_sampler"),
+            mag_filter: FilterMode::Linear,
+            min_filter: FilterMode::Linear,
+            ..default()
+        }))
+    }
+}
+
 #[derive(Default, Resource)]
 pub(crate) struct LearnedViews(pub HashMap<RetainedViewEntity, LearnedView>);
 
@@ -65,17 +81,11 @@ pub(crate) fn prepare_views(
         &ViewDepthStencilTexture,
     )>,
     cache: Res<PipelineCache>,
-    device: Res<RenderDevice>,
+    (device, bilinear): (Res<RenderDevice>, Res<Bilinear>),
     queue: Res<RenderQueue>,
     mut textures: ResMut<TextureCache>,
 ) {
     let draw_material = draw_functions.read().id::<DrawMaterial>();
-    let bilinear = device.create_sampler(&SamplerDescriptor {
-        label: Some("peelnet_sampler"),
-        mag_filter: FilterMode::Linear,
-        min_filter: FilterMode::Linear,
-        ..default()
-    });
     for (extracted, camera, msaa, depth) in &cameras {
         let id = extracted.retained_view_entity;
         let (Some(view), Some(phase)) = (views.0.get_mut(&id), phases.get_mut(&id)) else {
@@ -122,9 +132,6 @@ pub(crate) fn prepare_views(
         {
             made.extend([texture(name, *format, *every, 1)]);
         }
-        let depth_view = depth
-            .texture()
-            .create_view(&TextureViewDescriptor::default());
         let group = |reads: Reads<'_>| {
             let entry = |binding, resource| BindGroupEntry { binding, resource };
             let depths = view.uniform.binding().map(|range| entry(0, range));
@@ -133,12 +140,13 @@ pub(crate) fn prepare_views(
                 let texture = BindingResource::TextureView(&made[*read].default_view);
                 entries.push(entry(model.binding(read), texture));
                 if model.is_around(read) {
-                    let bilinear = BindingResource::Sampler(&bilinear);
+                    let bilinear = BindingResource::Sampler(&bilinear.0);
                     entries.push(entry(model.sampler_binding(), bilinear));
                 }
             }
             if reads.depth_samples.is_some() {
-                let depth = BindingResource::TextureView(&depth_view);
+                let depth = &depth.attachment.texture.default_view;
+                let depth = BindingResource::TextureView(depth);
                 entries.push(entry(model.depth_binding(), depth));
             }
             let layout = cache.get_bind_group_layout(&reads.layout(model));
