@@ -229,6 +229,7 @@ mod tests {
             (None, None, None, Ok(("exact", Some("fat")))),
             (Some(3.0), None, None, Ok(("fat", Some("good")))),
             (None, Some(1e-3), None, Ok(("good", Some("fat")))),
+            (None, None, Some(50.0), Ok(("good", Some("fast")))),
             (None, None, Some(24.0), Ok(("good", Some("fast")))),
             (Some(1.0), None, None, Ok(("fast", None))),
             (Some(1.5), Some(1e-4), None, Err("nearest is good")),

@@ -24,13 +24,13 @@ pub fn mean(values: impl IntoIterator<Item = f64>) -> Option<f64> {
 
 /// Geometric mean; `None` of nothing or if a value is not positive.
 pub fn geometric_mean(values: impl IntoIterator<Item = f64>) -> Option<f64> {
-    let values: Vec<f64> = values.into_iter().collect();
-    let least = values.iter().copied().reduce(f64::min)?;
-    let most = values.iter().copied().reduce(f64::max)?;
-    let logarithms = values.iter().map(|v| v.ln());
+    let values = values.into_iter().map(|v| (v > 0.0).then_some(v));
+    let values: Vec<f64> = values.collect::<Option<_>>()?;
+    let mean = mean(values.iter().map(|v| v.ln()))?.exp();
     // Rounding must not move a mean of equal values: one of [`EXACT_MSE`] is that of an exact method.
-    let mean = mean(logarithms)?.exp().clamp(least, most);
-    (least > 0.0).then_some(mean)
+    let least = values.iter().copied().fold(f64::INFINITY, f64::min);
+    let most = values.iter().copied().fold(0.0, f64::max);
+    Some(mean.clamp(least, most))
 }
 
 /// Each name once, in the order of the first.
@@ -235,6 +235,7 @@ pub(crate) mod tests {
             assert_eq!(mean, Some(EXACT_MSE), "{count}");
         }
         assert_eq!(geometric_mean([1.0, 0.0]), None);
+        assert_eq!(geometric_mean([1.0, f64::NAN]), None);
         assert_eq!(geometric_mean([]), None);
     }
 
