@@ -27,7 +27,7 @@ use std::path::PathBuf;
 fn compared(named: Option<Vec<String>>, models: Vec<peelnet::Model>) -> PyResult<Compared> {
     let named = named.map(|names| names.iter().map(|name| method(name)).collect());
     let named = named.transpose()?;
-    let compared = Compared::new(named, models, MethodSpec::compared);
+    let compared = Compared::new(named, models, |_| MethodSpec::compared());
     compared.and_then(Compared::with_base).map_err(raised)
 }
 

@@ -145,14 +145,14 @@ pub struct Compared {
 }
 
 impl Compared {
-    /// The methods named, or all of `every`, with the shipped models where none of a recipe is given.
+    /// The methods named, or those of `every` beside these models, with the shipped models where none of a recipe is given.
     ///
     /// # Errors
     /// Two models of one recipe, or a method that was named and has no model.
     pub fn new(
         named: Option<Vec<MethodSpec>>,
         mut models: Vec<Model>,
-        every: impl FnOnce() -> Vec<MethodSpec>,
+        every: impl FnOnce(&[Model]) -> Vec<MethodSpec>,
     ) -> Result<Self, Failure> {
         for (k, model) in models.iter().enumerate() {
             let recipe = model.meta.recipe;
@@ -163,7 +163,7 @@ impl Compared {
             }
         }
         let all = named.is_none();
-        let mut methods = named.unwrap_or_else(every);
+        let mut methods = named.unwrap_or_else(|| every(&models));
         let mut left_out = Vec::new();
         for recipe in Recipe::ALL {
             let is_wanted = methods.iter().any(|m| m.name() == recipe.method);
@@ -232,10 +232,10 @@ mod tests {
     #[test]
     fn a_comparison_has_one_model_of_each_recipe() {
         let small = Model::shipped(Recipe::SMALL).unwrap();
-        let twice = Compared::new(None, vec![small.clone(); 2], MethodSpec::compared);
+        let twice = Compared::new(None, vec![small.clone(); 2], |_| Vec::new());
         assert!(twice.unwrap_err().text.contains("one of each"));
         let named = vec!["mboit4".parse().unwrap(), "deep-large".parse().unwrap()];
-        let found = Compared::new(Some(named), vec![small], Vec::new).unwrap();
+        let found = Compared::new(Some(named), vec![small], |_| Vec::new()).unwrap();
         let methods: Vec<&str> = found.methods.iter().map(MethodSpec::name).collect();
         assert_eq!(methods, ["mboit4", "deep-large", Recipe::SMALL.method]);
         let recipes = found.models.iter().map(|m| m.meta.recipe);

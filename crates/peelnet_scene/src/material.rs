@@ -7,7 +7,10 @@ use crate::{
 };
 use bytemuck::{cast_slice, cast_slice_mut};
 use serde::Deserialize;
-use std::slice::{from_mut, from_ref};
+use std::{
+    any::Any,
+    slice::{from_mut, from_ref},
+};
 
 /// How a surface is lit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
@@ -215,6 +218,12 @@ macro_rules! material_keys {
             pub fn given(&self) -> Vec<&'static str> {
                 let all = [$((self.$key.is_some(), stringify!($key)),)*].into_iter();
                 all.filter_map(|(given, key)| given.then_some(key)).collect()
+            }
+
+            /// The maps that are given.
+            pub fn maps(&self) -> impl Iterator<Item = &MapRef> {
+                let values = [$(&self.$key as &dyn Any,)*].into_iter();
+                values.filter_map(|value| value.downcast_ref::<Option<MapRef>>()?.as_ref())
             }
 
             pub fn check_bounds(&self) -> Result<(), Fault> {

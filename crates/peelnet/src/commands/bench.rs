@@ -6,7 +6,7 @@ mod designs;
 use super::{Context, command_line, few};
 use crate::cli::{BenchArgs, BenchCommand, CompareArgs, EffectsArgs, PathArgs, ScalingArgs};
 use crate::progress::Bar;
-use peelnet::{Compared, Failure};
+use peelnet::{Compared, Failure, Model};
 use peelnet_bench::report::{Measurement, Results};
 use peelnet_bench::{
     EvalError, Machine, Partial,
@@ -111,7 +111,8 @@ fn scale(context: &Context<'_>, args: &ScalingArgs) -> Result<(), Failure> {
     let gpu = context.gpu()?;
     // Parameters change what a method costs, but hardly how that grows.
     let named = args.compared.methods.as_deref();
-    let (Compared { methods, .. }, learned) = compared(context, &gpu, named, models, one_of_each)?;
+    let (Compared { methods, .. }, learned) =
+        compared(context, &gpu, named, models, |_| one_of_each())?;
     // Every step has a size of its own.
     let plan = Plan {
         learned: &learned,
@@ -156,7 +157,8 @@ fn along_path(context: &Context<'_>, args: &PathArgs) -> Result<(), Failure> {
     let gpu = context.gpu()?;
     // A path costs as much as sixty views.
     let named = pictures.compared.methods.as_deref();
-    let (Compared { methods, .. }, learned) = compared(context, &gpu, named, models, one_of_each)?;
+    let (Compared { methods, .. }, learned) =
+        compared(context, &gpu, named, models, |_| one_of_each())?;
     let images = out.join("images");
     let plan = Plan {
         samples: pictures.samples,
@@ -188,7 +190,7 @@ pub(super) fn measure(
     out: Option<(&Path, bool)>,
 ) -> Result<Results<Bench>, Failure> {
     let gpu = context.gpu()?;
-    let (chosen, learned) = compared(context, &gpu, named, files, MethodSpec::compared)?;
+    let (chosen, learned) = compared(context, &gpu, named, files, |_| MethodSpec::compared())?;
     let chosen = chosen.with_base()?;
     let images = out.map(|(folder, _)| folder.join("images"));
     let plan = Plan {
@@ -295,7 +297,7 @@ pub(super) fn compared(
     gpu: &Gpu,
     named: Option<&[MethodSpec]>,
     files: &[PathBuf],
-    every: impl FnOnce() -> Vec<MethodSpec>,
+    every: impl FnOnce(&[Model]) -> Vec<MethodSpec>,
 ) -> Result<(Compared, Vec<LearnedWeight>), Failure> {
     let models = files.iter().map(peelnet::load_model);
     let models = models.collect::<Result<_, _>>()?;

@@ -25,9 +25,7 @@ pub(super) fn run(context: &Context<'_>, args: &StressArgs) -> Result<(), Failur
     };
     let gpu = context.gpu()?;
     let own_only = !args.models.is_empty() && args.methods.is_none();
-    let own = args.models.iter().map(peelnet::load_model);
-    let own: Vec<Model> = own.collect::<Result<_, _>>()?;
-    let all = || {
+    let all = |own: &[Model]| {
         let all = Subject::all_methods().into_iter();
         // A user's own network is checked alone.
         let is_own = |m: &MethodSpec| own.iter().any(|own| own.meta.recipe.method == m.name());

@@ -101,19 +101,8 @@ impl RawScene {
         let objects = self.object.iter().map(|o| (Some(&o.mesh), &o.material));
         let changes = self.timeline.iter().flat_map(|state| &state.object);
         let changes = changes.map(|change| (change.mesh.as_ref(), &change.material));
-        objects.chain(changes).flat_map(|(mesh, m)| {
-            let maps = [
-                &m.color_map,
-                &m.normal_map,
-                &m.metallic_roughness_map,
-                &m.specular_color_map,
-                &m.glossiness_map,
-                &m.specular_glossiness_map,
-                &m.occlusion_map,
-                &m.emissive_map,
-                &m.displacement_map,
-            ];
-            let maps = maps.into_iter().flatten().filter_map(Reference::file);
+        objects.chain(changes).flat_map(|(mesh, material)| {
+            let maps = material.maps().filter_map(Reference::file);
             maps.chain(mesh.and_then(Reference::file))
         })
     }
