@@ -35,10 +35,10 @@ fn apart_by(found: &[f32; 4], want: [f32; 3]) -> f32 {
     errors.fold(0.0, f32::max)
 }
 
-/// Five layers, two of which end in the middle of the frame, and an opaque wall that hides the last in the other half: the pixel of the middle
-/// tiles sees other depths than those beside it, and all pixels are told what lies between.
+/// Five layers, two of which end in the middle of the frame, and an opaque wall that hides the last in the other half: tiles left and right of
+/// the middle see other depths, and every pixel reads what is interpolated between tiles.
 #[test]
-fn pixels_are_told_what_is_seen_around_them() {
+fn pixels_read_what_is_seen_around_them() {
     let layer = |z, alpha, color| Fragment::new(z, alpha, color);
     let walls = [
         layer(1.0, 0.3, [0.9, 0.1, 0.2]),

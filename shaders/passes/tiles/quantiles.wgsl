@@ -3,11 +3,11 @@
 import package::learned::weight::peelnet_quantiles;
 
 @group(0) @binding(0) var<storage, read> seen: array<mat4x4f>;
-@group(0) @binding(1) var<uniform> frame: vec4u;
+@group(0) @binding(1) var tile_nearest: texture_2d<f32>;
 
 @fragment
 fn fragment_main(@builtin(position) position: vec4f) -> @location(0) vec4f {
-    let count = (frame.xy + 7u) / 8u;
+    let count = textureDimensions(tile_nearest);
     let tile = vec2i(position.xy);
     var sum = mat4x4f();
     for (var y = -1; y <= 1; y++) {

@@ -28,9 +28,12 @@ pub(super) fn draw(p: &mut Passes<'_>, around: &SmallTexture, after_cuts: bool) 
     bins.features(["tiles"]).writes(small.iter().copied());
     bins.after_cuts |= after_cuts;
     let of_pixels = p.compute("passes::tiles::seen", count);
+    // The last is as large as the texture that is made.
+    let of_size = small.last().copied();
     of_pixels.reads(small).writes([seen]).after_cuts |= after_cuts;
     p.pixels("passes::tiles::quantiles")
         .reads([seen])
+        .reads(of_size)
         .writes([quantiles]);
     Tiles {
         count,

@@ -142,8 +142,8 @@ enum Draws {
     Pixels,
 }
 
-/// One pass: its shader, what it reads and what it writes, targets in the order of the shader's locations. Compute shaders and
-/// passes over pixels may read the frame's size as `frame`, the latter `C_0` as `background`, and what reads small targets `bilinear`, a sampler.
+/// One pass: its shader, what it reads and what it writes, targets in the order of the shader's locations. A compute shader may read the
+/// frame's size as `frame`, a pass over pixels `C_0` as `background`, what reads small targets a sampler as `bilinear`.
 #[derive(Debug)]
 pub(crate) struct Pass {
     shader: String,
@@ -448,8 +448,7 @@ impl<'a> Passes<'a> {
         let (gpu, output) = (&b.scene.gpu, b.frame.output);
         let (shader, features) = (pass.shader.as_str(), self.features(pass));
         let modules = self.modules(pass);
-        let needs_size = matches!(pass.draws, Draws::Threads(_) | Draws::Pixels);
-        let size = needs_size.then(|| {
+        let size = matches!(pass.draws, Draws::Threads(_)).then(|| {
             let [width, height] = b.frame.size;
             let usage = wgpu::BufferUsages::UNIFORM;
             gpu.upload("frame size", &[width, height, 0, 0], usage)
