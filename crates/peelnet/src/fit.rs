@@ -9,8 +9,8 @@ use peelnet_core::files::{Outputs, STDOUT, Unfinished, is_remote, shown};
 use peelnet_dataset::Dataset;
 use peelnet_model::Model;
 use peelnet_train::{
-    CHECKPOINT_FILES, Config, End, EpochReport, Outcome, OutputLock, RunOptions, TrainingData,
-    checkpoint_folder, held_out_errors, train,
+    CHECKPOINT_FILES, Config, End, EpochReport, FINISHED_STATE, Outcome, OutputLock, RunOptions,
+    TrainingData, checkpoint_folder, held_out_errors, train,
 };
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
@@ -115,7 +115,11 @@ impl ModelPlace {
                 is_file = path != Path::new(STDOUT);
             }
             if is_file {
-                outputs.folder(out_label, &checkpoint_folder(path), CHECKPOINT_FILES)?;
+                let mut files = CHECKPOINT_FILES;
+                if !resume {
+                    files[0].1 = FINISHED_STATE;
+                }
+                outputs.folder(out_label, &checkpoint_folder(path), files)?;
             }
         }
         if resume && !is_file {

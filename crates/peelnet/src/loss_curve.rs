@@ -6,6 +6,9 @@ use peelnet_core::files::{Kind, shown, write_whole};
 use peelnet_train::EpochReport;
 use std::path::Path;
 
+/// The name of the picture's vertical axis.
+const LOSS: &str = "mean loss";
+
 const HEADINGS: &str = "epoch,train_loss,held_out_loss,seconds,rows_per_s";
 
 /// By what a loss curve is known, whose ending chooses its form: .csv a table, .svg a picture of both losses over the epochs.
@@ -26,7 +29,8 @@ fn form(path: &Path) -> Result<Form, Failure> {
     };
     let svg_kind = Kind {
         name: "a loss curve (SVG)",
-        is: Svg::is_ours,
+        // Other charts stay.
+        is: |head| Svg::is_ours(head) && head.windows(LOSS.len()).any(|w| w == LOSS.as_bytes()),
     };
     match path.extension().and_then(|e| e.to_str()) {
         Some(e) if e.eq_ignore_ascii_case("csv") => Ok((csv_kind, csv)),
@@ -75,7 +79,7 @@ pub fn curve_chart(history: &[EpochReport]) -> Svg {
         line("training", |r| Some(r.train_loss)),
         line("held out", |r| r.held_out_loss),
     ];
-    line_chart(&lines, "epoch", "mean loss", Scale::Linear)
+    line_chart(&lines, "epoch", LOSS, Scale::Linear)
 }
 
 #[cfg(test)]
@@ -113,7 +117,11 @@ mod tests {
             ("one.SVG", vec![row(1, 0.1, Some(0.1))]),
             ("zero.svg", vec![row(1, 0.0, None), row(2, 0.0, None)]),
         ] {
-            assert!(written(name, &history).ends_with("</svg>\n"));
+            let text = written(name, &history);
+            assert!(text.ends_with("</svg>\n"));
+            let is_a_curve = curve_kind(Path::new("c.svg")).unwrap().is;
+            assert!(is_a_curve(text.as_bytes()));
+            assert!(!is_a_curve(text.replace(LOSS, "time").as_bytes()));
         }
     }
 }

@@ -15,6 +15,11 @@ pub(crate) const MAX_PARTS: u64 = 1_000_000;
 /// Most texels of all textures: 4 GiB.
 const MAX_TEXELS: u64 = 1 << 30;
 
+/// Texels that a scene may have whatever its files hold: one texture of the largest size; and how many more it may have for each byte of
+/// its images. Photos and painted maps have at most five; one colour, packed, has thousands.
+const FREE_TEXELS: u64 = 1 << 26;
+const TEXELS_A_BYTE: u64 = 64;
+
 /// Most triangles that displacements cut others into, and most texels of generated patterns: seconds on a CPU.
 pub(crate) const MAX_CUT: u64 = 8_000_000;
 const MAX_GENERATED_TEXELS: u64 = 1 << 25;
@@ -35,6 +40,7 @@ pub(crate) struct Budget {
     vertices: u64,
     parts: u64,
     texels: u64,
+    image_bytes: u64,
     cut: u64,
     generated_texels: u64,
 }
@@ -70,9 +76,22 @@ impl Budget {
         take(&mut self.parts, parts, MAX_PARTS, "parts of objects")
     }
 
+    /// Takes the texels of an image of so many bytes.
+    pub fn take_image(&mut self, size: [u32; 2], bytes: usize) -> Result<(), String> {
+        self.image_bytes = self.image_bytes.saturating_add(bytes as u64);
+        self.take_texels(size)
+    }
+
+    /// Takes the texels of a texture that is made.
     pub fn take_texels(&mut self, [width, height]: [u32; 2]) -> Result<(), String> {
         let texels = u64::from(width) * u64::from(height);
-        take(&mut self.texels, texels, MAX_TEXELS, "texels")
+        let more = self.image_bytes.saturating_mul(TEXELS_A_BYTE);
+        let most = FREE_TEXELS.saturating_add(more).min(MAX_TEXELS);
+        let what = "texels";
+        take(&mut self.texels, texels, most, what).map_err(|e| match most {
+            MAX_TEXELS => e,
+            _ => format!("{e} ({FREE_TEXELS}, and {TEXELS_A_BYTE} for each byte of its images)"),
+        })
     }
 }
 
@@ -113,8 +132,17 @@ mod tests {
         budget.take_pattern(4096).expect("fits");
         let e = budget.take_pattern(4).expect_err("too many");
         assert!(e.contains("texels of patterns beside 33554432"), "{e}");
-        let e = budget.take_texels([u32::MAX; 2]).expect_err("too many");
-        assert!(e.contains("1073741824"), "{e}");
+        // Half of the free texels are patterns'. A byte of an image allows 64 more.
+        budget.take_image([8192, 4096], 0).expect("fits");
+        budget.take_image([8, 16], 2).expect("fits");
+        let e = budget.take_texels([1, 1]).expect_err("too many");
+        assert!(
+            e.contains("67108992; ") && e.contains("64 for each byte"),
+            "{e}"
+        );
+        let e = budget.take_image([u32::MAX; 2], usize::MAX);
+        let e = e.expect_err("too many");
+        assert!(e.contains("1073741824") && !e.contains("byte"), "{e}");
         assert!(budget.take_parts(usize::MAX, usize::MAX).is_err());
         assert!(budget.take_mesh(MAX_TRIANGLES, MAX_VERTICES + 1).is_err());
     }

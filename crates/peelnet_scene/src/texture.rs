@@ -137,7 +137,9 @@ impl Texture {
         if width.max(height) > LONGEST {
             return Err(too_large());
         }
-        budget.take_texels([width, height])?;
+        budget
+            .take_image([width, height], bytes.len())
+            .map_err(|e| format!("has {e}"))?;
         let image = DynamicImage::from_decoder(decoder).map_err(|e| plain(&e))?;
         let texels = bytemuck::cast_vec(image.into_rgba8().into_raw());
         Ok(Self::new(name, [width, height], texels))

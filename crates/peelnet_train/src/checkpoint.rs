@@ -30,6 +30,31 @@ pub const FILES: [(&str, Kind); 3] = [
     ("last.safetensors", peelnet_model::KIND),
 ];
 
+/// What a training that begins anew replaces: not the hours of one that was interrupted.
+pub const FINISHED: Kind = Kind {
+    name: "the state of a finished training (an unfinished one can be resumed)",
+    is: |head| (FILES[0].1.is)(head) && !is_unfinished(head),
+};
+
+/// Whether epochs were trained, and fewer than were asked for. What cannot be read cannot be resumed either.
+fn is_unfinished(head: &[u8]) -> bool {
+    let header = || -> Option<Header> {
+        let (length, text) = head.split_first_chunk()?;
+        let length = usize::try_from(u64::from_le_bytes(*length)).ok()?;
+        let text: serde_json::Value = serde_json::from_slice(text.get(..length)?).ok()?;
+        serde_json::from_str(text["__metadata__"][KEY].as_str()?).ok()
+    };
+    header().is_some_and(|h| {
+        let since_best = h
+            .best_epoch
+            .map(|best| h.epochs.saturating_sub(best as usize));
+        let has_stopped = |patience: u32| since_best.is_some_and(|n| n >= patience as usize);
+        let is_ended =
+            h.epochs >= h.config.epochs as usize || h.config.patience.is_some_and(has_stopped);
+        h.epochs > 0 && !is_ended
+    })
+}
+
 /// `out/net.safetensors` → `out/net.safetensors.checkpoint`.
 pub fn folder(out: &Path) -> PathBuf {
     beside(out, "checkpoint")

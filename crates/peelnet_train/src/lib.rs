@@ -77,7 +77,9 @@ mod scratch;
 mod table;
 mod training_loop;
 
-pub use checkpoint::{FILES as CHECKPOINT_FILES, folder as checkpoint_folder};
+pub use checkpoint::{
+    FILES as CHECKPOINT_FILES, FINISHED as FINISHED_STATE, folder as checkpoint_folder,
+};
 pub use config::{Config, DEFAULT_BUFFER_ROWS, DEFAULT_MAX_ROWS, Schedule};
 pub use error::TrainError;
 pub use loader::held_out_errors;

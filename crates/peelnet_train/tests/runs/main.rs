@@ -12,7 +12,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use peelnet_dataset::{Dataset, DatasetWriter, Format, FragmentBatch, Header, Part, SceneEntry};
 use peelnet_model::Model;
 use peelnet_train::{
-    Config, End, Outcome, RunOptions, TrainError, TrainingData, checkpoint_folder, train,
+    CHECKPOINT_FILES, Config, End, FINISHED_STATE, Outcome, RunOptions, TrainError, TrainingData,
+    checkpoint_folder, train,
 };
 
 static NEVER: AtomicBool = AtomicBool::new(false);
@@ -67,6 +68,9 @@ fn assert_resumes(config: &Config, load: &dyn Fn() -> TrainingData) {
     );
     assert!(!out.exists(), "an interrupted run leaves no finished model");
     assert!(Model::load(first.checkpoint.join("last.safetensors")).is_ok());
+    let state = first.checkpoint.join(CHECKPOINT_FILES[0].0);
+    let is_foreign = || FINISHED_STATE.is_foreign(&state).unwrap();
+    assert!(is_foreign(), "a run that begins anew would replace it");
 
     let second = train(config, &load(), &resuming(&out), |_| {}).unwrap();
     assert_eq!(
@@ -74,6 +78,7 @@ fn assert_resumes(config: &Config, load: &dyn Fn() -> TrainingData) {
         (End::Finished, Some(half))
     );
     assert_eq!(second.model, expected.model);
+    assert!(!is_foreign());
     let [whole, parts] = [&whole, &out].map(|file| std::fs::read(file).unwrap());
     assert!(whole == parts);
     let losses = |outcome: &Outcome| -> Vec<_> {
