@@ -22,16 +22,15 @@ fn fragment_main(surface: Surface) -> Sums {
     let phi = angle(warped_depth(surface.depth_linear));
     var total = textureLoad(zeroth, pixel, 0).x;
     var m12 = textureLoad(lower, pixel, 0);
-    var m34 = vec4f(0.0);
-    @if(upper) m34 = textureLoad(upper, pixel, 0);
+    var m3 = vec2f(0.0);
+    @if(upper) m3 = textureLoad(upper, pixel, 0).xy;
     @if(own_share_out) {
         let b = absorbance(color.a);
         let first = turn(phi);
         let second = times(first, first);
         total -= b;
         m12 -= b * vec4f(first, second);
-        m34 -= b * vec4f(times(second, first), times(second, second));
+        m3 -= b * times(second, first);
     }
-    let moments = array<vec2f, 4>(m12.xy, m12.zw, m34.xy, m34.zw);
-    return sums_of(surface, color, transmittance_from_moments(total, moments, phi));
+    return sums_of(surface, color, transmittance_from_moments(total, m12, m3, phi));
 }
