@@ -1,4 +1,4 @@
-//! `avboit` over several blocks of pixels: what its CPU reference, of a pixel among its like, does not know.
+//! `avboit` over several columns of pixels: what its CPU reference, of a pixel among its like, does not know.
 
 use peelnet_core::{absorbance::absorbance, fragment::Fragment, methods::composite};
 use peelnet_render::methods::avboit::reference::UNIT;
@@ -10,10 +10,10 @@ const TOLERANCE: f32 = 1e-5;
 
 const BACKGROUND: [f32; 3] = [0.25, 0.5, 0.75];
 
-/// Of 16 x 16 pixels the block at the upper left has a layer more between the other two. How much of it counts in front of the far one
-/// falls linearly from the centre of that block to the centres of those beside it, and is even beyond them.
+/// Of 16 x 16 pixels the column at the upper left has a layer more between the other two. How much of it is seen in front of the far one
+/// falls linearly from the centre of that column to the centres of those beside it, and is even beyond them.
 #[test]
-fn blocks_are_linear_between_their_centres() {
+fn columns_are_linear_between_their_centres() {
     let near = Fragment::new(1.0, 0.3, [0.9, 0.1, 0.2]);
     let between = Fragment::new(2.0, 0.6, [0.1, 0.8, 0.3]);
     let far = Fragment::new(4.0, 0.5, [0.2, 0.1, 0.7]);
@@ -27,16 +27,17 @@ fn blocks_are_linear_between_their_centres() {
     ];
     let scene = scene("three walls", BACKGROUND, objects);
     let image = draw(&gpu(), &scene, "avboit:targets=f32", [16, 16]);
-    let b = |f: Fragment| (absorbance(f.alpha) / UNIT).round() * UNIT;
-    // Centres of blocks are at 4 and 12.
+    let t = |f: Fragment| (-(absorbance(f.alpha) / UNIT).round() * UNIT).exp();
+    // Centres of columns are at 4 and 12.
     let share = |pixel: usize| 1.0 - ((pixel as f64 + 0.5 - 4.0) / 8.0).clamp(0.0, 1.0);
     for y in 0..16 {
         for x in 0..16 {
-            let in_front = b(near) + share(x) * share(y) * b(between);
-            let (mut seen, mut weights) = (vec![near, far], vec![1.0, (-in_front).exp()]);
+            let share = share(x) * share(y);
+            let in_front = t(near) * (1.0 - share + share * t(between));
+            let (mut seen, mut weights) = (vec![near, far], vec![1.0, in_front]);
             if x < 8 && y < 8 {
                 seen.push(between);
-                weights.push((-b(near)).exp());
+                weights.push(t(near));
             }
             let want = composite(&seen, BACKGROUND, &weights);
             let pixel = image.pixels[y * 16 + x];

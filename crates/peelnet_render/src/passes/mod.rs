@@ -154,6 +154,8 @@ pub(crate) struct Pass {
     parameters: Option<String>,
     reads: Vec<Handle>,
     writes: Vec<Handle>,
+    /// As [`Target::every`] of its targets, where it has none.
+    every: u32,
     /// Draws it in the first frame and where the camera jumped only: what it writes stays for the frames that follow.
     pub after_cuts: bool,
 }
@@ -169,6 +171,12 @@ impl Pass {
     pub fn boxes(&mut self) -> &mut Self {
         self.draws = Draws::Boxes;
         self
+    }
+
+    /// Draws one pixel in so many, both ways: the middle ones.
+    pub fn every(&mut self, every: u32) -> &mut Self {
+        self.every = every;
+        self.features(["tiles"])
     }
 
     pub fn reads(&mut self, all: impl IntoIterator<Item = Handle>) -> &mut Self {
@@ -312,6 +320,7 @@ impl<'a> Passes<'a> {
             parameters: None,
             reads: Vec::new(),
             writes: Vec::new(),
+            every: 1,
             after_cuts: false,
         });
         let place = self.passes.len() - 1;
@@ -476,7 +485,7 @@ impl<'a> Passes<'a> {
             });
         }
         let (mut colors, mut states, mut samples) = (Vec::new(), Vec::new(), 1);
-        let mut every = 1;
+        let mut every = pass.every;
         for written in &pass.writes {
             let resource = &self.resources[written.0];
             match (resource, &resources[written.0]) {

@@ -3,21 +3,16 @@
 mod expectations;
 pub mod reference;
 
-use crate::methods::prelude::*;
+use crate::methods::{prelude::*, wboit};
 
-// A voxel of 16 x 16 pixels holds 512 opaque layers before its sum ends.
-const CELL: Parameter = Parameter::whole(
-    "cell",
-    "pixels of a block's side, 8 by default",
-    Some(8),
-    (1, 16),
-);
+/// Pixels of a column's side.
+const CELL: u32 = 8;
 
 const SLICES: Parameter = Parameter::whole(
     "slices",
-    "slices of depth, 64 by default",
-    Some(64),
-    (1, 1024),
+    "slices of depth, 128 by default, taken from 2,048 intervals",
+    Some(128),
+    (32, 1024),
 );
 
 fn slices(spec: &MethodSpec) -> u64 {
@@ -25,29 +20,34 @@ fn slices(spec: &MethodSpec) -> u64 {
 }
 
 pub(super) const METHOD: Method = Method {
-    parameters: &[TARGETS, CELL, SLICES],
-    curve: &["", ":cell=4", ":cell=2,slices=128"],
+    parameters: &[TARGETS, SLICES],
     expectations: expectations::METHOD,
     ..Method::new(
         "avboit",
-        "transmittance from a grid of blocks of pixels and slices of depth",
+        "transmittance from a grid of voxels whose slices are where something is; one geometry pass, and two over one pixel in 64",
         passes,
     )
 };
 
 fn passes(p: &mut Passes<'_>) {
-    let (cell, slices) = (CELL.count(p.on.spec).unwrap_or_default(), slices(p.on.spec));
-    let [columns, rows] = p.on.size.map(|s| u64::from(s).div_ceil(cell));
-    p.parameters = format!("const CELL: u32 = {cell}u;\nconst SLICES: u32 = {slices}u;\n");
-    let sums = p.target(SUMS);
-    let transmittance = p.target(TRANSMITTANCE);
+    let slices = slices(p.on.spec);
+    let [columns, rows] = p.on.size.map(|s| u64::from(s.div_ceil(CELL)));
+    p.parameters = format!("const SLICES: u32 = {slices}u;\n");
+    let words = reference::INTERVALS as u64 / 32;
+    let occupied = p.storage("occupied", 0, words * 4);
+    let used = p.uncleared("used", (1 + 2 * words) * 4);
     let voxels = p.storage("voxels", 0, columns * rows * slices * 4);
-    p.geometry("methods::avboit::voxels", Needs::OPACITY)
-        .writes([transmittance, voxels]);
+    p.geometry("methods::avboit::occupied", Needs::DEPTH)
+        .every(CELL)
+        .writes([occupied]);
+    p.compute("methods::avboit::compact", 1)
+        .reads([occupied])
+        .writes([used]);
+    p.geometry("methods::avboit::splat", Needs::OPACITY)
+        .every(CELL)
+        .reads([used])
+        .writes([voxels]);
     p.compute("methods::avboit::integrate", columns * rows)
         .writes([voxels]);
-    p.geometry("methods::avboit::gather", Needs::COLOR)
-        .reads([voxels])
-        .writes([sums]);
-    p.resolve("methods::wboit::resolve", [sums, transmittance]);
+    wboit::sums(p, "methods::avboit::gather", &[], [used, voxels]);
 }

@@ -9,6 +9,6 @@ pub(super) const METHOD: Method = Method {
     parameters: &[TARGETS],
     expectations: expectations::METHOD,
     ..Method::new("blended", "McGuire & Bavoil 2013, eq 5", |p| {
-        sums(p, "methods::blended::gather", &[]);
+        sums(p, "methods::blended::gather", &[], []);
     })
 };

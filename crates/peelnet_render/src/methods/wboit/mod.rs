@@ -3,7 +3,7 @@
 pub(super) mod expectations;
 
 use crate::methods::prelude::*;
-use crate::passes::TINTED;
+use crate::passes::{Handle, TINTED};
 use peelnet_core::weights::Weight;
 
 const FACTOR: Parameter = Parameter::positive("factor", "largest weight, 3e3 by default", 3e3, 1e9);
@@ -132,12 +132,17 @@ fn passes(p: &mut Passes<'_>) {
     p.parameters = format!(
         "const FACTOR: f32 = {factor:?};\nconst POWER: u32 = {power}u;\nconst EPSILON: f32 = {offset:?};\n"
     );
-    sums(p, "methods::wboit::gather", &features);
+    sums(p, "methods::wboit::gather", &features, []);
 }
 
 /// Weighted sums and a transmittance in the targets that the scene's colours need: of grey colours one target less, with `T_∞` where
 /// alpha is.
-pub(super) fn sums(p: &mut Passes<'_>, shader: &str, features: &[&'static str]) {
+pub(super) fn sums(
+    p: &mut Passes<'_>,
+    shader: &str,
+    features: &[&'static str],
+    reads: impl IntoIterator<Item = Handle>,
+) {
     let packed = Target {
         blend: Blend::AddTransmit,
         ..SUMS
@@ -154,7 +159,7 @@ pub(super) fn sums(p: &mut Passes<'_>, shader: &str, features: &[&'static str]) 
     let targets = p.targets(targets.iter().copied());
     let features = features.iter().copied().chain(feature);
     let gather = p.geometry(shader, Needs::COLOR).features(features);
-    gather.writes(targets.iter().copied());
+    gather.reads(reads).writes(targets.iter().copied());
     p.resolve("methods::wboit::resolve", targets)
         .features(feature);
 }
