@@ -87,8 +87,10 @@ pub(super) fn statements(
         }
     };
     let mut out = String::with_capacity(text.len());
-    let mut joined = 0;
-    for line in text.replace("\r\n", "\n").replace('\r', "\n").lines() {
+    let (mut statement, mut joined) = (String::new(), 0);
+    // The last line may say that it goes on.
+    let text = text.replace("\r\n", "\n").replace('\r', "\n");
+    for line in text.lines().chain([""]) {
         // Files that were joined have byte order marks inside.
         let line = line.trim_start_matches('\u{feff}');
         let line = line.split('#').next().unwrap_or("").trim();
@@ -97,12 +99,15 @@ pub(super) fn statements(
             None => (line, false),
         };
         let blank = |c: char| if c.is_whitespace() { ' ' } else { c };
-        out.extend(part.chars().map(blank));
+        statement.extend(part.chars().map(blank));
         if is_continued {
-            out.push(' ');
+            statement.push(' ');
             joined += 1;
         } else {
+            // A part may be empty.
+            out += statement.trim();
             out.extend(std::iter::repeat_n('\n', joined + 1));
+            statement.clear();
             joined = 0;
         }
     }

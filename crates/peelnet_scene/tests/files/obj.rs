@@ -33,7 +33,7 @@ fn polygons_negative_indices_groups_and_materials() {
 #[test]
 fn what_exporters_write() {
     let obj = "mtllib\ta.mtl # library\nusemtl\tbrass\nf 1 2 3 \\\n4 5 6\nl 1 2 3\np 1\n\
-        v 0 0 0 # origin\nv 2 0 0\nv 2 1 0\nv 1 1 0\nv 1 2 0\nv 0 2 0\n";
+        v 0 0 0 # origin\n\\\nv 2 0 0\nv 2 1 0\nv 1 1 0\nv 1 2 0\nv 0 2 0\n";
     let (m, warnings, _) = load(obj, "newmtl brass\nKd 1 0 0 # red\nmap_Kd brass.png\n");
     assert_eq!((m.triangles.len(), area(&m)), (4, 3.0));
     assert_eq!(m.parts[0].material.color, [1.0, 0.0, 0.0]);
@@ -55,8 +55,9 @@ fn what_exporters_write() {
 }
 
 /// Lines of a library, where ` ; ` ends one, and the error; the same of what follows the vertices of a square.
-const BAD_MATERIALS: &str = "
+const BAD_MATERIALS: &str = r"
 newmtl m ; Kd 1 0 => a.mtl:2: 'Kd 1 0' needs 1 or 3 numbers
+newmtl m ; \ ; Ks 0. 0 => a.mtl:2: 'Ks 0. 0' needs 1 or 3 numbers
 newmtl m ; d x => a.mtl:2: 'd x' holds no finite number
 newmtl m ; d nan => a.mtl:2: 'd nan' holds no finite number
 newmtl m ;  ; Tr 1.5 => a.mtl:3: 'Tr 1.5' must lie in 0 … 1
