@@ -98,8 +98,6 @@ pub struct Guarantees {
     pub root: Option<u32>,
     /// Its estimate of transmittance is held to a fraction of the limits that published methods are held to.
     pub close_estimate: bool,
-    /// A surface far from all others leaves them as close to exact as they are without it.
-    pub apart: bool,
     /// How much of its own absorbance a fragment counts as in front of it, given exact statistics.
     pub own_share: f64,
     /// Fragments are rounded before they are composited, by its CPU reference too.
@@ -127,7 +125,6 @@ impl Guarantees {
         statistics: Precision::Full,
         root: None,
         close_estimate: false,
-        apart: false,
         own_share: 0.0,
         rounds_fragments: false,
         nearest_in_steps: false,
@@ -175,9 +172,8 @@ pub enum Property {
     Opaque,
     /// The transmittance that the weights stand for is right. Value: the largest error of any fragment.
     Transmittance,
-    /// The image is close to the exact one where a surface or two lie far from all others. Value: the root of the mean squared error, linear
-    /// light.
-    Apart,
+    /// The image errs by hardly more than it did when a table of errors was made. Value: the root of the mean squared error on the display, of 255.
+    Image,
     /// Between two frames of a movement pixels jump by no more than in the exact image. Value: the mean excess, linear light.
     Steady,
     /// The network's output in half floats is that in 64 bits. Value: the difference.

@@ -112,6 +112,8 @@ impl Planned {
         if p.every > 1 {
             let [width, height] = cx.frame.size.map(|n| n as f32 / p.every as f32);
             pass.set_viewport(0.0, 0.0, width, height, 0.0, 1.0);
+            // Where the pass writes no target as small, adapters may draw beyond the viewport.
+            pass.set_scissor_rect(0, 0, width.ceil() as u32, height.ceil() as u32);
         }
         match (&p.work, &self.sorted) {
             (Work::Boxes(boxes), _) => boxes.draw(&mut pass, cx.frame),
