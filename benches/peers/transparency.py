@@ -31,6 +31,13 @@ OURS = ["abuffer", "linked-list", "dual-peel", "depth-peel", "wboit-eq7", "wboit
 # What each peer is installed from; versions are in the table.
 PYTHON = {"vtk": ["vtk"], "pygfx": ["pygfx", "rendercanvas"], "polyscope": ["polyscope"], "mitsuba": ["mitsuba"]}
 NODE = {"three": ["three"], "babylon": ["@babylonjs/core", "@babylonjs/loaders"], "cesium": ["@cesium/engine"], "molstar": ["molstar"]}
+# Bytes a pixel of the targets that a method has for itself, by the source of the version drawn (VTK: of its repository): nothing but the picture
+# where blending goes into that, else sums and their depth, or the depths and colours that are peeled.
+BYTES = {
+    ("vtk", "dual depth peeling"): 36, ("vtk", "weighted blending"): 14, ("pygfx", "weighted blending"): 9, ("pygfx", "sorted blending"): 0,
+    ("three", "sorted blending"): 0, ("three", "weighted blending"): 9, ("babylon", "sorted blending"): 0, ("babylon", "dual depth peeling"): 48,
+    ("cesium", "weighted blending"): 32, ("cesium", "sorted blending"): 0, ("molstar", "weighted blending"): 36, ("molstar", "blending"): 0,
+}
 
 
 def run(*command, **options):
@@ -55,7 +62,7 @@ def node_for(peer, out):
     folder = out.parent / (out.name + "-npm")
     folder.mkdir(exist_ok=True)
     (folder / "package.json").exists() or (folder / "package.json").write_text('{"private": true, "type": "module"}')
-    missing = [name for name in ["puppeteer-core@24", "esbuild", *NODE[peer]] if not (folder / "node_modules" / name.split("@24")[0]).exists()]
+    missing = [name for name in ["puppeteer-core", "esbuild", *NODE[peer]] if not (folder / "node_modules" / name).exists()]
     if missing:
         run(shutil.which("npm"), "install", "--silent", "--no-audit", "--no-fund", *missing, cwd=folder)
     return folder
@@ -165,7 +172,10 @@ def draw_peer(peer, out):
     done = subprocess.run([str(part) for part in command], capture_output=True, text=True, timeout=1800)
     if done.returncode != 0:
         raise RuntimeError(f"{peer} did not draw:\n{done.stderr[-2000:]}")
-    return json.loads(done.stdout.splitlines()[-1])
+    answer = json.loads(done.stdout.splitlines()[-1])
+    if peer in NODE:
+        answer["version"] = json.loads((node_for(peer, out) / "node_modules" / NODE[peer][0] / "package.json").read_text())["version"]
+    return answer
 
 
 def main():
@@ -194,7 +204,7 @@ def main():
                 continue
             try:
                 answer = draw_ours(out, given.size, given.frames) if program == "peelnet" else draw_peer(program, out)
-            except (RuntimeError, subprocess.SubprocessError, OSError) as error:
+            except (RuntimeError, subprocess.SubprocessError, OSError, ValueError, IndexError) as error:
                 if program == "peelnet":
                     raise
                 failed[program] = error
@@ -225,7 +235,7 @@ def table(given, times, answers, failed, differences):
         found = differences[f"{program}-{method.replace(' ', '-')}"]
         # Times of another rasteriser say nothing about ours.
         ratio = f"{ms / reference:.2f}" if "llvmpipe" in answer["adapter"] else "–"
-        size = answer["bytes"].get(method)
+        size = answer["bytes"].get(method) if program == "peelnet" else BYTES.get((program, method))
         lines.append(f"| {program} {answer.get('version', '')} | {method} | {ms:.1f} | {ratio} | {'–' if size is None else f'{size:.0f}'} "
                      f"| {found['most']:.2f} ({found['mean']:.3f}) | {found['over']:.1%} | {found['mse']:.2e} |")
     lines += ["", "Drawn opaque, pixels away from silhouettes that differ from ours by more than 2/255: "
@@ -238,7 +248,7 @@ def table(given, times, answers, failed, differences):
     cpu = next((line.split(":")[1].strip() for line in open("/proc/cpuinfo") if line.startswith("model name")), "") \
         if os.path.exists("/proc/cpuinfo") else platform.processor()
     lines += ["", f"{given.meshes} meshes, {given.size}, {given.rounds} rounds of {given.frames} frames in turn. {differences['share']:.0%} of the pixels "
-              f"lie away from silhouettes. Machine: {cpu}, {os.cpu_count()} cores; "
+              f"lie away from silhouettes. Machine: {cpu}, {os.cpu_count()} cores, load {os.getloadavg()[2]:.1f}; "
               + "; ".join(f"{program} drew with {answer['adapter']}" for program, answer in answers.items())
               + ". Command: `python3 " + " ".join(["benches/peers/transparency.py", *sys.argv[1:]]) + "`."]
     return "\n".join(lines) + "\n"

@@ -38,7 +38,12 @@ const server = createServer( ( { url }, response ) => {
 
 	const [ type, content ] = files[ url ] ?? [];
 
-	if ( type === undefined ) response.writeHead( 404 ).end();
+	if ( type === undefined ) {
+
+		console.error( `The page asks for ${ url }.` );
+		response.writeHead( 404 ).end();
+
+	}
 	else response.setHeader( 'content-type', type ).end( content );
 
 } );
@@ -57,20 +62,32 @@ try {
 	page.on( 'console', ( message ) => console.error( message.text() ) );
 	page.on( 'pageerror', ( error ) => console.error( error ) );
 	await page.setViewport( { width: scene.width, height: scene.height } );
-	await page.goto( `http://127.0.0.1:${ server.address().port }/` );
-	await page.waitForFunction( 'window.drawn !== undefined', { timeout: 60_000 } );
 
-	const { pictures, ...answer } = await page.evaluate( ( given ) => window.drawn( given ), scene );
+	const answer = { times: {} };
+	const load = async () => {
 
-	for ( const [ method, base64 ] of Object.entries( pictures ) ) {
+		await page.goto( `http://127.0.0.1:${ server.address().port }/` );
+		await page.waitForFunction( 'window.drawn !== undefined', { timeout: 60_000 } );
 
+	};
+
+	await load();
+
+	for ( const method of await page.evaluate( 'window.methods' ) ) {
+
+		await load();
+
+		const { picture, ms, adapter } = await page.evaluate( ( given, name ) => window.drawn( given, name ), scene, method );
 		// Linear numbers of 8 bits, the lowest row first.
-		const bytes = Buffer.from( base64, 'base64' );
+		const bytes = Buffer.from( picture, 'base64' );
 		const row = 4 * scene.width;
 		const header = `{'descr': '|u1', 'fortran_order': False, 'shape': (${ scene.height }, ${ scene.width }, 4), }`.padEnd( 117 ) + '\n';
 		const rows = Array.from( { length: scene.height }, ( _, y ) => bytes.subarray( row * ( scene.height - 1 - y ), row * ( scene.height - y ) ) );
 
 		writeFileSync( join( folder, `${ peer }-${ method.replaceAll( ' ', '-' ) }.npy` ), Buffer.concat( [ Buffer.from( [ 0x93, 0x4e, 0x55, 0x4d, 0x50, 0x59, 1, 0, 118, 0 ] ), Buffer.from( header ), ...rows ] ) );
+		answer.adapter = `${ adapter } in ${ await browser.version() }`;
+
+		if ( method !== 'opaque' ) answer.times[ method ] = ms;
 
 	}
 

@@ -1,4 +1,4 @@
-"""Draws the scene with polyscope's depth peeling ("pretty") and its blending without order ("simple"); called by transparency.py."""
+"""Draws the scene with polyscope's depth peeling ("pretty") and its "simple" blending; called by transparency.py."""
 
 import importlib.metadata
 import os
@@ -46,7 +46,7 @@ def linear(image):
 add(peer.meshes(opaque=True))
 peer.save("opaque", linear(picture()))
 add(peer.meshes())
-for name, mode in [("depth peeling", "pretty"), ("blending in its order", "simple")]:
+for name, mode in [("depth peeling", "pretty"), ("simple blending", "simple")]:
     polyscope.set_transparency_mode(mode)
     # More layers than any pixel has: exact.
     polyscope.set_transparency_render_passes(32)

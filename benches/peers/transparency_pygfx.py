@@ -20,7 +20,11 @@ def world(meshes, mode):
     made.add(pygfx.Background(None, pygfx.BackgroundMaterial(pygfx.Color.from_physical(*peer.background, 1.0))))
     for points, triangles, color, alpha in meshes:
         material = pygfx.MeshBasicMaterial(color=pygfx.Color.from_physical(*color, 1.0), opacity=alpha, side="both", alpha_mode=mode)
-        made.add(pygfx.Mesh(pygfx.Geometry(positions=points, indices=triangles.astype(numpy.int32)), material))
+        # It sorts by the places of objects.
+        center = (points.min(axis=0) + points.max(axis=0)) / 2.0
+        mesh = pygfx.Mesh(pygfx.Geometry(positions=points - center, indices=triangles.astype(numpy.int32)), material)
+        mesh.local.position = center
+        made.add(mesh)
     return made
 
 
@@ -40,7 +44,7 @@ def picture(scene):
 
 canvas.request_draw(lambda: None)
 peer.save("opaque", decoded(picture(world(peer.meshes(opaque=True), "solid"))))
-for name, mode in [("weighted blending", "weighted_blend"), ("sorted blending", "blend"), ("stochastic, blue noise", "dither"), ("stochastic, Bayer", "bayer")]:
+for name, mode in [("weighted blending", "weighted_blend"), ("sorted blending", "blend"), ("stochastic blue noise", "dither"), ("stochastic Bayer", "bayer")]:
     scene = world(peer.meshes(), mode)
     peer.save(name, decoded(picture(scene)))
     peer.measure(name, lambda: picture(scene))

@@ -35,7 +35,7 @@ class Peer:
         scene = json.loads(pathlib.Path(sys.argv[1]).read_text())
         self.name, self.folder, self.camera, self.background = name, pathlib.Path(sys.argv[1]).parent, scene["camera"], scene["background"]
         self.width, self.height, self.frames = scene["width"], scene["height"], scene["frames"]
-        self.times, self.bytes = {}, {}
+        self.times = {}
 
     def meshes(self, opaque=False):
         return read_glb(self.folder / ("opaque.glb" if opaque else "scene.glb"))
@@ -43,17 +43,17 @@ class Peer:
     def save(self, method, linear):
         numpy.save(self.folder / f"{self.name}-{method.replace(' ', '-')}.npy", linear.astype(numpy.float32))
 
-    def measure(self, method, draw, bytes_a_pixel=None):
+    def measure(self, method, draw):
         """The median of the times that `draw` takes; its first call has been."""
         all_ms = []
         for _ in range(self.frames):
             start = time.perf_counter()
             draw()
             all_ms.append((time.perf_counter() - start) * 1e3)
-        self.times[method], self.bytes[method] = statistics.median(all_ms), bytes_a_pixel
+        self.times[method] = statistics.median(all_ms)
 
-    def answer(self, version, adapter, **more):
-        print(json.dumps({"times": self.times, "bytes": self.bytes, "version": version, "adapter": adapter, **more}))
+    def answer(self, version, adapter):
+        print(json.dumps({"times": self.times, "version": version, "adapter": adapter}))
 
 
 def decoded(image):

@@ -71,11 +71,9 @@ def weighted():
 add(peer.meshes(opaque=True))
 peer.save("opaque", picture())
 add(peer.meshes())
-# Textures of vtkDualDepthPeelingPass: two of depths (two floats each), two of front and two of back colours (RGBA8), opaque depth; of
-# vtkOrderIndependentTranslucentPass: RGBA16F, R16F and depth.
-for name, use, size in [("dual depth peeling", peeling, None), ("weighted blending", weighted, None)]:
+for name, use in [("dual depth peeling", peeling), ("weighted blending", weighted)]:
     use()
     peer.save(name, picture())
-    peer.measure(name, picture, size)
+    peer.measure(name, picture)
 adapter = next((line.split(":")[1].strip() for line in window.ReportCapabilities().splitlines() if "renderer string" in line), "unknown")
 peer.answer(vtk.vtkVersion.GetVTKVersion(), adapter)

@@ -1,64 +1,46 @@
-// What every page does: pictures and times of each of its peer's methods.
+// What every page does: the picture and the time of a frame of one of its peer's methods.
 
 /**
- * `start( scene )` sets a peer up and returns its version, its canvas, with a WebGL context, and for each method a function that draws a frame of
- * `scene.glb`; the method `opaque` draws `opaque.glb`. What a frame shows is linear.
+ * `methods` are functions by name, which take the scene and set a method up: a canvas with a WebGL 2 context, and a function that draws a frame of
+ * `scene.glb`; `opaque` draws `opaque.glb`. What a frame shows is linear. Each is set up in a page of its own.
  */
-export function peer( start ) {
+export function peer( methods ) {
 
-	window.drawn = async ( scene ) => {
+	window.methods = Object.keys( methods );
 
-		const { version, canvas, methods, bytes = {} } = await start( scene );
+	window.drawn = async ( scene, method ) => {
+
+		const { canvas, draw } = await methods[ method ]( scene );
 		const gl = canvas.getContext( 'webgl2' );
-		const pixels = new Uint8Array( 4 * scene.width * scene.height );
 
 		if ( gl.drawingBufferWidth !== scene.width || gl.drawingBufferHeight !== scene.height ) throw new Error( 'The canvas has another size than the scene.' );
 
-		// Reading the picture waits until it is drawn, as it does in the other programs.
-		const frame = async ( draw ) => {
+		const pixels = new Uint8Array( 4 * scene.width * scene.height );
+		const times = [];
 
-			await draw();
+		// The first frames compile shaders.
+		for ( let i = - 3; i < scene.frames; i ++ ) {
 
+			const begun = performance.now();
+
+			draw();
+
+			// Reading the picture waits until it is drawn, as it does in the other programs.
 			const bound = gl.getParameter( gl.READ_FRAMEBUFFER_BINDING );
 
 			gl.bindFramebuffer( gl.READ_FRAMEBUFFER, null );
 			gl.readPixels( 0, 0, scene.width, scene.height, gl.RGBA, gl.UNSIGNED_BYTE, pixels );
 			gl.bindFramebuffer( gl.READ_FRAMEBUFFER, bound );
 
-		};
-
-		const pictures = {};
-		const times = {};
-
-		for ( const [ name, { use = () => {}, draw } ] of Object.entries( methods ) ) {
-
-			await use();
-
-			// The first frames compile shaders.
-			for ( let i = 0; i < 3; i ++ ) await frame( draw );
-
-			pictures[ name ] = btoa( Array.from( pixels, ( byte ) => String.fromCharCode( byte ) ).join( '' ) );
-
-			if ( name === 'opaque' ) continue;
-
-			const all = [];
-
-			for ( let i = 0; i < scene.frames; i ++ ) {
-
-				const begun = performance.now();
-
-				await frame( draw );
-				all.push( performance.now() - begun );
-
-			}
-
-			times[ name ] = all.sort( ( a, b ) => a - b )[ Math.floor( all.length / 2 ) ];
+			if ( i >= 0 ) times.push( performance.now() - begun );
 
 		}
 
-		const info = gl.getExtension( 'WEBGL_debug_renderer_info' );
-
-		return { version, adapter: gl.getParameter( info.UNMASKED_RENDERER_WEBGL ), times, bytes, pictures };
+		return {
+			adapter: gl.getParameter( gl.getExtension( 'WEBGL_debug_renderer_info' ).UNMASKED_RENDERER_WEBGL ),
+			ms: times.sort( ( a, b ) => a - b )[ Math.floor( times.length / 2 ) ],
+			picture: btoa( Array.from( pixels, ( byte ) => String.fromCharCode( byte ) ).join( '' ) )
+		};
 
 	};
 

@@ -8,11 +8,10 @@ import { peelnetPass } from '@peelnet/three';
 import medium from '@peelnet/three/models/medium.js';
 import { peer } from './draw.js';
 
-peer( async ( { camera: given, background, width, height } ) => {
+const method = ( file, node ) => async ( { camera: given, background, width, height } ) => {
 
 	const renderer = new THREE.WebGPURenderer( { antialias: false, forceWebGL: true } );
 	const camera = new THREE.PerspectiveCamera( given.fov_y, width / height, given.near, given.far );
-	const scenes = {};
 
 	renderer.setPixelRatio( 1 );
 	renderer.setSize( width, height );
@@ -23,41 +22,29 @@ peer( async ( { camera: given, background, width, height } ) => {
 	camera.position.set( ...given.position );
 	camera.lookAt( ...given.target );
 
-	for ( const name of [ 'scene', 'opaque' ] ) {
+	const { scene: model } = await new GLTFLoader().loadAsync( `/${ file }.glb` );
+	const scene = new THREE.Scene().add( model );
 
-		( { scene: scenes[ name ] } = await new GLTFLoader().loadAsync( `/${ name }.glb` ) );
-		const world = new THREE.Scene();
+	scene.background = new THREE.Color().setRGB( ...background );
 
-		world.add( scenes[ name ] );
-		world.background = new THREE.Color().setRGB( ...background );
-		scenes[ name ] = world;
+	const pipeline = new THREE.RenderPipeline( renderer, node( scene, camera ) );
 
-	}
+	return {
+		canvas: renderer.domElement,
+		draw() {
 
-	const method = ( node ) => {
+			// Without the browser's frames every drawing must be said to be a new one, else passes are not drawn again.
+			renderer._nodes.nodeFrame.update();
+			pipeline.render();
 
-		const pipeline = new THREE.RenderPipeline( renderer, node );
-
-		return {
-			draw() {
-
-				// Without the browser's frames every drawing must be said to be a new one, else passes are not drawn again.
-				renderer._nodes.nodeFrame.update();
-				pipeline.render();
-
-			}
-		};
-
+		}
 	};
 
-	const problems = [];
-	const methods = {
-		opaque: method( pass( scenes.opaque, camera ) ),
-		'sorted blending': method( pass( scenes.scene, camera ) ),
-		'weighted blending': method( oitPass( scenes.scene, camera ) ),
-		'peelnet medium': method( peelnetPass( scenes.scene, camera, { model: medium, onProblem: ( message ) => { throw new Error( message ); } } ) )
-	};
+};
 
-	return { version: THREE.REVISION, canvas: renderer.domElement, methods };
-
+peer( {
+	opaque: method( 'opaque', pass ),
+	'sorted blending': method( 'scene', pass ),
+	'weighted blending': method( 'scene', oitPass ),
+	'peelnet medium': method( 'scene', ( scene, camera ) => peelnetPass( scene, camera, { model: medium, onProblem: ( message ) => { throw new Error( message ); } } ) )
 } );
