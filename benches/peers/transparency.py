@@ -62,7 +62,9 @@ def node_for(peer, out):
     folder = out.parent / (out.name + "-npm")
     folder.mkdir(exist_ok=True)
     (folder / "package.json").exists() or (folder / "package.json").write_text('{"private": true, "type": "module"}')
-    missing = [name for name in ["puppeteer-core", "esbuild", *NODE[peer]] if not (folder / "node_modules" / name).exists()]
+    # The last of puppeteer-core that runs with Node.js 20.
+    packages = {"puppeteer-core": "puppeteer-core@24", **{name: name for name in ["esbuild", *NODE[peer]]}}
+    missing = [wanted for name, wanted in packages.items() if not (folder / "node_modules" / name).exists()]
     if missing:
         run(shutil.which("npm"), "install", "--silent", "--no-audit", "--no-fund", *missing, cwd=folder)
     return folder
