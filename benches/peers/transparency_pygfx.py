@@ -1,74 +1,51 @@
-"""Draws a scene with pygfx's weighted blending: `scene.json WxH frames`; called by transparency.py."""
+"""Draws the scene with pygfx: weighted blending, sorted blending and its two stochastic modes; called by transparency.py."""
 
-import json
 import math
 import os
-import pathlib
-import statistics
-import sys
-import time
 
 import numpy
 import pygfx
 from rendercanvas.offscreen import OffscreenRenderCanvas
+from transparency_scene import Peer, decoded
 
 os.environ.setdefault("XDG_RUNTIME_DIR", "/tmp")
-path, size, frames = sys.argv[1:]
-scene = json.loads(pathlib.Path(path).read_text())
-folder = pathlib.Path(scene["folder"])
-width, height = map(int, size.split("x"))
-
-
-def read(obj):
-    """Positions and triangles of an OBJ file."""
-    points, triangles = [], []
-    for line in obj.read_text().splitlines():
-        kind, *rest = line.split()
-        if kind == "v":
-            points.append([float(x) for x in rest])
-        elif kind == "f":
-            triangles.append([int(x) - 1 for x in rest])
-    return numpy.array(points, numpy.float32), numpy.array(triangles, numpy.int32)
-
-
-canvas = OffscreenRenderCanvas(size=(width, height), pixel_ratio=1)
+peer = Peer("pygfx")
+canvas = OffscreenRenderCanvas(size=(peer.width, peer.height), pixel_ratio=1)
 renderer = pygfx.WgpuRenderer(canvas, pixel_scale=1, ppaa="none")
-world = pygfx.Scene()
 
 
-def physical(color, alpha=1.0):
+def world(meshes, mode):
     # Colours are given as they shall be blended; pygfx encodes its output for a display.
-    return pygfx.Color.from_physical(*color, alpha)
+    made = pygfx.Scene()
+    made.add(pygfx.Background(None, pygfx.BackgroundMaterial(pygfx.Color.from_physical(*peer.background, 1.0))))
+    for points, triangles, color, alpha in meshes:
+        material = pygfx.MeshBasicMaterial(color=pygfx.Color.from_physical(*color, 1.0), opacity=alpha, side="both", alpha_mode=mode)
+        # It sorts by the places of objects.
+        center = (points.min(axis=0) + points.max(axis=0)) / 2.0
+        mesh = pygfx.Mesh(pygfx.Geometry(positions=points - center, indices=triangles.astype(numpy.int32)), material)
+        mesh.local.position = center
+        made.add(mesh)
+    return made
 
 
-world.add(pygfx.Background(None, pygfx.BackgroundMaterial(physical(scene["background"]))))
-for mesh in scene["meshes"]:
-    points, triangles = read(folder / mesh["mesh"])
-    material = pygfx.MeshBasicMaterial(color=physical(mesh["color"]), opacity=mesh["alpha"], side="both", alpha_mode="weighted_blend")
-    world.add(pygfx.Mesh(pygfx.Geometry(positions=points, indices=triangles), material))
-given = scene["camera"]
 # pygfx takes the angle of the mean of width and height, not of the height.
-aspect = width / height
-angle = 2.0 * math.degrees(math.atan(math.tan(math.radians(given["fov_y"]) / 2.0) * (1.0 + aspect) / 2.0))
-camera = pygfx.PerspectiveCamera(angle, aspect, depth_range=(given["near"], given["far"]))
+aspect = peer.width / peer.height
+angle = 2.0 * math.degrees(math.atan(math.tan(math.radians(peer.camera["fov_y"]) / 2.0) * (1.0 + aspect) / 2.0))
+camera = pygfx.PerspectiveCamera(angle, aspect, depth_range=(peer.camera["near"], peer.camera["far"]))
 camera.maintain_aspect = False
-camera.local.position = given["position"]
-camera.look_at(given["target"])
+camera.local.position = peer.camera["position"]
+camera.look_at(peer.camera["target"])
 
 
-def picture():
-    renderer.render(world, camera)
-    return numpy.asarray(renderer.snapshot())
+def picture(scene):
+    renderer.render(scene, camera)
+    return numpy.asarray(renderer.snapshot())[..., :3]
 
 
-canvas.request_draw(lambda: renderer.render(world, camera))
-image = picture()[..., :3].astype(numpy.float32) / 255.0
-linear = numpy.where(image <= 0.04045, image / 12.92, ((image + 0.055) / 1.055) ** 2.4)
-numpy.save(folder / "pygfx-weighted-blending.npy", linear.astype(numpy.float32))
-all_ms = []
-for _ in range(int(frames)):
-    start = time.perf_counter()
-    picture()
-    all_ms.append((time.perf_counter() - start) * 1e3)
-adapter = renderer.device.adapter.info["device"]
-print(json.dumps({"times": {"weighted blending": statistics.median(all_ms)}, "version": pygfx.__version__, "adapter": adapter}))
+canvas.request_draw(lambda: None)
+peer.save("opaque", decoded(picture(world(peer.meshes(opaque=True), "solid"))))
+for name, mode in [("weighted blending", "weighted_blend"), ("sorted blending", "blend"), ("stochastic blue noise", "dither"), ("stochastic Bayer", "bayer")]:
+    scene = world(peer.meshes(), mode)
+    peer.save(name, decoded(picture(scene)))
+    peer.measure(name, lambda: picture(scene))
+peer.answer(pygfx.__version__, renderer.device.adapter.info["device"])

@@ -1,11 +1,6 @@
-"""Draws a scene with VTK's dual depth peeling and with its weighted blending: `scene.json WxH frames`; called by transparency.py."""
+"""Draws the scene with VTK's dual depth peeling and with its weighted blending; called by transparency.py."""
 
-import json
 import os
-import pathlib
-import statistics
-import sys
-import time
 
 # The same rasteriser for all, without a window.
 os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
@@ -13,44 +8,52 @@ os.environ.setdefault("LIBGL_ALWAYS_SOFTWARE", "1")
 
 import numpy  # noqa: E402
 import vtk  # noqa: E402
-from vtk.util.numpy_support import vtk_to_numpy  # noqa: E402
+from transparency_scene import Peer  # noqa: E402
+from vtk.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy  # noqa: E402
 
-path, size, frames = sys.argv[1:]
-scene = json.loads(pathlib.Path(path).read_text())
-folder = pathlib.Path(scene["folder"])
-width, height = map(int, size.split("x"))
+peer = Peer("vtk")
 window = vtk.vtkRenderWindow()
 window.SetOffScreenRendering(1)
-window.SetSize(width, height)
+window.SetSize(peer.width, peer.height)
 window.SetMultiSamples(0)
 window.SetAlphaBitPlanes(1)
 renderer = vtk.vtkRenderer()
-renderer.SetBackground(*scene["background"])
+renderer.SetBackground(*peer.background)
 window.AddRenderer(renderer)
-for mesh in scene["meshes"]:
-    reader = vtk.vtkOBJReader()
-    reader.SetFileName(str(folder / mesh["mesh"]))
-    mapper = vtk.vtkPolyDataMapper()
-    mapper.SetInputConnection(reader.GetOutputPort())
-    actor = vtk.vtkActor()
-    actor.SetMapper(mapper)
-    actor.GetProperty().SetColor(*mesh["color"])
-    actor.GetProperty().SetOpacity(mesh["alpha"])
-    actor.GetProperty().LightingOff()
-    renderer.AddActor(actor)
+
+
+def add(meshes):
+    renderer.RemoveAllViewProps()
+    for points, triangles, color, alpha in meshes:
+        data = vtk.vtkPolyData()
+        data.SetPoints(vtk.vtkPoints())
+        data.GetPoints().SetData(numpy_to_vtk(points, deep=True))
+        cells = vtk.vtkCellArray()
+        cells.SetData(3, numpy_to_vtkIdTypeArray(triangles.astype(numpy.int64).ravel(), deep=True))
+        data.SetPolys(cells)
+        mapper = vtk.vtkPolyDataMapper()
+        mapper.SetInputData(data)
+        actor = vtk.vtkActor()
+        actor.SetMapper(mapper)
+        actor.GetProperty().SetColor(*color)
+        actor.GetProperty().SetOpacity(alpha)
+        actor.GetProperty().LightingOff()
+        renderer.AddActor(actor)
+
+
 camera = renderer.GetActiveCamera()
-camera.SetPosition(*scene["camera"]["position"])
-camera.SetFocalPoint(*scene["camera"]["target"])
-camera.SetViewUp(*scene["camera"]["up"])
-camera.SetViewAngle(scene["camera"]["fov_y"])
-camera.SetClippingRange(scene["camera"]["near"], scene["camera"]["far"])
+camera.SetPosition(*peer.camera["position"])
+camera.SetFocalPoint(*peer.camera["target"])
+camera.SetViewUp(*peer.camera["up"])
+camera.SetViewAngle(peer.camera["fov_y"])
+camera.SetClippingRange(peer.camera["near"], peer.camera["far"])
 
 
 def picture():
     window.Render()
     pixels = vtk.vtkUnsignedCharArray()
-    window.GetRGBACharPixelData(0, 0, width - 1, height - 1, 0, pixels)
-    return vtk_to_numpy(pixels).reshape(height, width, 4)[::-1, :, :3]
+    window.GetRGBACharPixelData(0, 0, peer.width - 1, peer.height - 1, 0, pixels)
+    return vtk_to_numpy(pixels).reshape(peer.height, peer.width, 4)[::-1, :, :3] / 255.0
 
 
 def peeling():
@@ -65,16 +68,12 @@ def weighted():
     renderer.SetUseOIT(True)
 
 
-times = {}
+add(peer.meshes(opaque=True))
+peer.save("opaque", picture())
+add(peer.meshes())
 for name, use in [("dual depth peeling", peeling), ("weighted blending", weighted)]:
     use()
-    image = picture()
-    numpy.save(folder / f"vtk-{name.replace(' ', '-')}.npy", image.astype(numpy.float32) / 255.0)
-    all_ms = []
-    for _ in range(int(frames)):
-        start = time.perf_counter()
-        picture()
-        all_ms.append((time.perf_counter() - start) * 1e3)
-    times[name] = statistics.median(all_ms)
+    peer.save(name, picture())
+    peer.measure(name, picture)
 adapter = next((line.split(":")[1].strip() for line in window.ReportCapabilities().splitlines() if "renderer string" in line), "unknown")
-print(json.dumps({"times": times, "version": vtk.vtkVersion.GetVTKVersion(), "adapter": adapter}))
+peer.answer(vtk.vtkVersion.GetVTKVersion(), adapter)

@@ -49,7 +49,7 @@ cargo xtask <command>
                   lints of deploy/; datasets and models in an S3 server; Ray with two nodes in a network namespace: scenes extracted to S3
                   (or folders) while a worker and a node are killed, compared with one process
   languages       compile the exported texts with glslangValidator and DXC (installed from Debian and PyPI)
-  peers           training against PyTorch, transparency against VTK and pygfx (installed from PyPI into out/peers)
+  peers           training against PyTorch, transparency against VTK, three.js and others (installed from PyPI and npm into out/peers)
 
 Tools that are missing (a Vulkan driver, Chromium, subcommands of cargo) are installed, with a line that says so.
 ";
