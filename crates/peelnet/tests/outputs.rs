@@ -89,6 +89,17 @@ fn a_folder_of_results_is_of_one_run() {
     folder.write("b/results.json", &own);
     folder.prints("bench redraw --out b");
     assert_eq!(folder.read("b/results.json"), own.as_bytes());
+    folder.write("b/results.json", &results);
+    // Nothing was timed, and all of it is of this program's shaders.
+    assert!(results.contains("\"time_ms\": null") && !results.contains("\"time_ms\": 0"));
+    folder.prints("bench redraw --check --out b");
+    let shaders = results.split("\"shaders\": \"").nth(1).unwrap();
+    folder.write("b/results.json", results.replace(&shaders[..64], "other"));
+    let said = folder.says("bench redraw --check --out b", 1);
+    assert!(
+        said.contains("wboit-eq9") && said.contains("measure them again"),
+        "{said}"
+    );
     folder.write("b/results.json", results);
     let held = peelnet_train::OutputLock::take(&folder.at("b/.peelnet")).unwrap();
     for line in [

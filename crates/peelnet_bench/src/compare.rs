@@ -11,14 +11,14 @@ use crate::{
     stage::{Ready, Stage, Watch, exact_method, in_turn, percentile},
     transmittance::Peeled,
 };
-use peelnet_model::Model;
+use peelnet_model::{Model, Recipe};
 use peelnet_render::gpu::{Gpu, record::PassTime};
 use peelnet_render::{
     Frame, Image, LearnedWeight, MethodOptions, MethodSpec, Profile, milliseconds, of_method,
 };
 use peelnet_scene::Scene;
 use sha2::{Digest as _, Sha256};
-use std::path::Path;
+use std::{collections::BTreeMap, path::Path, sync::LazyLock};
 
 pub use crate::stage::EXACT;
 
@@ -145,6 +145,26 @@ pub fn check_pictures(rows: &[Row], folder: &Path) -> Result<(), EvalError> {
     Ok(())
 }
 
+/// SHA-256 of all shaders of this program.
+static SHADERS: LazyLock<String> = LazyLock::new(|| json_hash(&peelnet_render::shaders::SOURCES));
+
+/// Methods of which rows were drawn by other shaders than this program's, or with a network that does not ship.
+pub fn drawn_otherwise(rows: &[Row]) -> Vec<&str> {
+    let is_shipped = |method: &str, network: &str| {
+        let recipe = Recipe::for_method(method.split(':').next().unwrap_or_default());
+        let model = recipe.and_then(|recipe| Model::shipped(recipe).ok());
+        model.and_then(|m| m.hash().ok()).as_deref() == Some(network)
+    };
+    let mut known = BTreeMap::new();
+    let others = rows.iter().filter(|row| {
+        let pair = (row.method.as_str(), row.network.as_deref());
+        let is_own = known.entry(pair);
+        let is_own = is_own.or_insert_with(|| pair.1.is_none_or(|n| is_shipped(pair.0, n)));
+        row.shaders != *SHADERS || !*is_own
+    });
+    each_once(others.map(|row| row.method.as_str()))
+}
+
 struct Entry<'a> {
     method: MethodSpec,
     name: String,
@@ -180,8 +200,10 @@ pub(crate) fn compare(
         if plan.frames > 0 {
             time(&stage, plan.frames, view, &mut entries, &mut rows, watch)?;
         }
-        for row in &mut rows {
+        for (row, entry) in rows.iter_mut().zip(&entries) {
             row.adapter.clone_from(&gpu.info.name);
+            row.shaders.clone_from(&SHADERS);
+            row.network = entry.model.and_then(|m| m.hash().ok());
             row.scene_content.clone_from(&scene.content);
         }
         partial.push(rows)?;
@@ -377,9 +399,6 @@ fn row(frame: &Frame, exact: &[[f32; 4]]) -> Row {
         covered_pixels: d.covered_pixels,
         dark_pixels: d.dark_pixels,
         non_finite_pixels: d.non_finite_pixels,
-        time_ms: milliseconds(&of_method(&frame.times)),
-        wall_ms: drawn.then_some(frame.wall_micros / 1e3),
-        time_by_pass: medians_by_pass(&[of_method(&frame.times)]),
         passes,
         bytes_per_pixel: drawn.then_some(stats.bytes_per_pixel),
         ..Row::default()

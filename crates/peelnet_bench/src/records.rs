@@ -68,6 +68,11 @@ pub struct Row {
     /// Hash of what the scene shows, see [`Scene::content`](peelnet_scene::Scene::content); empty in rows of before there was one.
     #[serde(default)]
     pub scene_content: String,
+    /// Hashes of all shaders of the program that drew it, and of the network's model file; empty in rows of before there were any.
+    #[serde(default)]
+    pub shaders: String,
+    #[serde(default)]
+    pub network: Option<String>,
     /// SHA-256 of the picture in `images/`, which is drawn of view 0.
     #[serde(default)]
     pub picture: Option<String>,

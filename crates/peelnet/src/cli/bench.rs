@@ -45,6 +45,10 @@ pub enum BenchCommand {
         /// Folder of a comparison
         #[arg(long, value_name = "DIR")]
         out: PathBuf,
+
+        /// Write nothing; an error if rows are of other shaders or networks than this program's
+        #[arg(long)]
+        check: bool,
     },
 }
 
@@ -101,7 +105,7 @@ pub struct PicturesArgs {
 pub struct CompareArgs {
     #[command(flatten)]
     pub pictures: PicturesArgs,
-    /// Timed frames per method and view, drawn method after method in turn; 0 times the compared frame
+    /// Timed frames per method and view, drawn method after method in turn; with 0 nothing is timed
     #[arg(long, value_name = "N", default_value_t = 5)]
     pub frames: u32,
     /// Views of each scene

@@ -11,7 +11,7 @@ use peelnet_bench::report::{Measurement, Results};
 use peelnet_bench::{
     EvalError, Machine, Partial,
     bench::{Bench, Progress, bench_watched},
-    compare::{Plan, check_pictures},
+    compare::{Plan, check_pictures, drawn_otherwise},
     effects::{self, Effects},
     json_hash,
     path::{self, Along},
@@ -34,7 +34,7 @@ pub(super) fn run(context: &Context<'_>, args: &BenchArgs) -> Result<(), Failure
         Some(BenchCommand::Scaling(args)) => scale(context, args),
         Some(BenchCommand::Effects(args)) => measure_effects(context, args),
         Some(BenchCommand::Designs(args)) => designs::run(context, args),
-        Some(BenchCommand::Redraw { out }) => redraw(context, out),
+        Some(BenchCommand::Redraw { out, check }) => redraw(context, out, *check),
         None => (args.comparison.iter()).try_for_each(|args| compare(context, args)),
     }
 }
@@ -64,7 +64,19 @@ fn compare(context: &Context<'_>, args: &CompareArgs) -> Result<(), Failure> {
 const RESULTS: &str = "results.json";
 
 /// Draws older results again. That ends no interrupted run: its finished views stay.
-fn redraw(context: &Context<'_>, out: &Path) -> Result<(), Failure> {
+fn redraw(context: &Context<'_>, out: &Path, check: bool) -> Result<(), Failure> {
+    if check {
+        let results = read(out)?;
+        let others = drawn_otherwise(&results.measured.rows);
+        return match &others[..] {
+            [] => print(context, &results),
+            _ => Err(Failure::failed(format!(
+                "{}: of other shaders or networks than this program's: {}; measure them again",
+                shown(&out.join(RESULTS)),
+                others.join(", ")
+            ))),
+        };
+    }
     let mut outputs = context.results::<Bench>(&[], out)?;
     outputs.folder("--out", out, [(Partial::FILE, Partial::KIND)])?;
     let _begun = context.begin_in(out, outputs, &[])?;

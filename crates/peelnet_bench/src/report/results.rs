@@ -43,13 +43,14 @@ impl<T> Results<T> {
     /// The sentence under a table of figures.
     pub(crate) fn credit(&self) -> String {
         let m = &self.machine;
+        // This sign begins code and ends it.
+        let plain = |text: &str| text.replace('`', "'");
         format!(
             "Measured on {} ({}, {} cores) with `{}`.",
-            markdown(&m.adapter),
-            markdown(&m.cpu),
+            markdown(&plain(&m.adapter)),
+            markdown(&plain(&m.cpu)),
             m.cores,
-            // In code only this sign ends it.
-            one_line(&self.command).replace('`', "'")
+            plain(&one_line(&self.command))
         )
     }
 }
