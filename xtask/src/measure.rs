@@ -2,7 +2,7 @@
 
 use crate::{
     Outcome, apart,
-    product::{Program, scene_file, scene_files},
+    product::{Program, files_in, scene_file, scene_files},
     root, run,
 };
 use std::{fs, path::Path, time::Instant};
@@ -16,6 +16,9 @@ const PATH_METHODS: &str = "abuffer,painter-object,painter-triangle,wboit-eq9,mb
 /// What draws the geometry once, and what it is compared with.
 const ONE_PASS_METHODS: &str = "abuffer,painter-object:sort=off,wboit-eq7,wboit-eq8,wboit-eq9,wboit-eq10,wboit-inverse-power,mboit4,deep-anchored-small,deep-small,deep-medium,deep-medium:range=frame,one,one:range=last,one:range=frame,one-wide,one-wide:range=last,one-wide:range=frame,deep-one,deep-one:range=last,deep-one:range=frame,deep-one-wide,deep-one-wide:range=last,deep-one-wide:range=frame";
 
+/// One or two settings of each family, and all that is learned.
+const COMPARED_METHODS: &str = "abuffer,linked-list,painter-triangle,wboit-eq9,wboit-inverse-power,mboit4,mboit4:own=out,mboit6,mboit8,mboit-trig-2,mboit-trig-3,wavelet-3:bounds=pixel,bins-8,bins-16,avboit,kbuffer-4,kbuffer-4:colors=u8,hybrid-8,stochastic-16,deep-thesis,nmt:targets=f16,dfaoit,slabs:keep=small,deep-small,deep-small:range=frame,slabs:keep=medium,deep-medium,slabs,deep-large,deep-anchored-small,deep-anchored-medium,one,deep-one,deep-one:range=last,one-wide,deep-one-wide";
+
 /// What is judged with a surface apart from all others.
 const APART_METHODS: &str = "abuffer,wboit-eq9,mboit4,mboit6,wavelet-3:bounds=pixel,bins-8,bins-16,avboit,kbuffer-4,slabs:keep=small,slabs:keep=medium,slabs,deep-anchored-medium,deep-small,deep-medium,deep-large,deep-medium:range=boxes,deep-medium:range=frame,one,one-wide,deep-one,deep-one-wide,deep-one:range=last,deep-one-wide:range=last,deep-one:range=frame,deep-one-wide:range=frame";
 
@@ -25,7 +28,9 @@ const APART_METHODS: &str = "abuffer,wboit-eq9,mboit4,mboit6,wavelet-3:bounds=pi
 /// The thesis's recipe runs at a quarter of its pixels, with as many rows: the whole takes twenty minutes.
 const STEPS: &str = "
     stress | stress | stress.csv.xz stress.md
-    held-out | bench <held-out> --size 512x384 --views 1 --frames 3 | results.json.xz table.md pareto.svg pareto-mean.svg
+    held-out-all | bench <held-out> --size 512x384 --views 1 --frames 3 | results.json.xz table.md pareto.svg pareto-mean.svg
+    held-out | bench <held-out> --size 512x384 --views 1 --frames 3 --methods <compared> | results.json.xz table.md pareto.svg pareto-mean.svg
+    fresh | bench <fresh> --size 512x384 --views 1 --frames 3 --methods <compared> | results.json.xz table.md
     validation | bench <validation> --size 512x384 --views 1 --frames 3 | results.json.xz table.md
     one-pass | bench <held-out> --size 512x384 --views 1 --frames 5 --methods <one-pass> | results.json.xz table.md pareto-mean.svg
     apart-none | bench <apart none> --size 256x192 --views 1 --frames 0 --methods <apart> | table.md
@@ -58,6 +63,7 @@ fn held_out() -> Result<Vec<String>, String> {
 fn filled(line: &str) -> Result<String, String> {
     let extract = "extract data/scenes/sixteen-050.toml --size 1024x768 --json";
     let mut line = line.replace("<apart>", APART_METHODS);
+    line = line.replace("<compared>", COMPARED_METHODS);
     for (kind, ..) in apart::KINDS {
         let name = format!("<apart {kind}>");
         if line.contains(&name) {
@@ -66,6 +72,7 @@ fn filled(line: &str) -> Result<String, String> {
     }
     Ok(line
         .replace("<held-out>", &held_out()?.join(" "))
+        .replace("<fresh>", &files_in("data/fresh", |_| true)?.join(" "))
         .replace("<validation>", &VALIDATION_SCENES.map(scene_file).join(" "))
         .replace("<path>", PATH_METHODS)
         .replace("<one-pass>", ONE_PASS_METHODS)

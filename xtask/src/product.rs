@@ -170,12 +170,17 @@ pub fn scene_file(name: &str) -> String {
 
 /// The shipped scenes of some names, relative to the root, in the order of their names.
 pub fn scene_files(is_asked: impl Fn(&str) -> bool) -> Result<Vec<String>, String> {
-    let folder = root().join("data/scenes");
+    files_in("data/scenes", is_asked)
+}
+
+/// The scene files of some names in a folder, as [`scene_files`].
+pub fn files_in(folder: &str, is_asked: impl Fn(&str) -> bool) -> Result<Vec<String>, String> {
+    let (from, folder) = (folder, root().join(folder));
     let entries = fs::read_dir(&folder).map_err(|e| format!("{}: {e}", folder.display()))?;
     let file = |entry: fs::DirEntry| {
         let file = entry.file_name();
         let name = file.to_str()?.strip_suffix(".toml")?;
-        is_asked(name).then(|| scene_file(name))
+        is_asked(name).then(|| format!("{from}/{name}.toml"))
     };
     let mut files: Vec<String> = entries.flatten().filter_map(file).collect();
     files.sort();
