@@ -66,9 +66,9 @@ pub struct Bytes {
 }
 
 impl Bytes {
-    /// Whether every view takes the same.
+    /// Whether every view takes the same, up to rounding of the mean.
     pub fn is_one(&self) -> bool {
-        self.mean == self.most
+        self.mean.round() == self.most.round()
     }
 
     /// One number, or mean, median and most over the views.
