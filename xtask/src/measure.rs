@@ -132,8 +132,37 @@ pub fn measure(machine: &str, names: &[&str]) -> Outcome {
         "\n{times}{together:>7.1} s  together; results are in {}",
         into.display()
     );
+    let stale = stale(&program, &into)?;
+    if !stale.is_empty() {
+        println!(
+            "of other shaders or networks than this program's, measure them again: {}",
+            stale.join(" ")
+        );
+    }
     println!(
         "next: PEELNET_UPDATE=1 cargo nextest run -p peelnet_tests generated_tables puts them into the documents"
     );
     Ok(())
+}
+
+/// Steps whose kept rows are of other shaders or networks than this program's.
+fn stale(program: &Program, into: &Path) -> Result<Vec<&'static str>, String> {
+    let mut found = Vec::new();
+    for [name, _, keep] in steps() {
+        let packed = into.join(name).join("results.json.xz");
+        if !keep.starts_with("results.json") || !packed.exists() {
+            continue;
+        }
+        let folder = format!("out/measure/{name}");
+        let io = |e: std::io::Error| format!("{folder}: {e}");
+        fs::create_dir_all(root().join(&folder)).map_err(io)?;
+        let plain = root().join(&folder).join("results.json.xz");
+        fs::copy(&packed, &plain).map_err(io)?;
+        run(&format!("xz --decompress --force {}", plain.display()))?;
+        let check = format!("bench redraw --check --out {folder} --quiet --json");
+        if program.captured(&check).is_err() {
+            found.push(name);
+        }
+    }
+    Ok(found)
 }

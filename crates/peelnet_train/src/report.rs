@@ -34,9 +34,9 @@ impl EpochReport {
     pub fn progress(&self) -> String {
         let held_out = self
             .held_out_loss
-            .map_or_else(String::new, |loss| format!(", held out {loss:.6}"));
+            .map_or_else(String::new, |loss| format!(", held out {loss:.3e}"));
         let rate = thousands(self.rows_per_s as u64);
-        format!("loss {:.6}{held_out}, {rate} rows/s", self.train_loss)
+        format!("loss {:.3e}{held_out}, {rate} rows/s", self.train_loss)
     }
 }
 

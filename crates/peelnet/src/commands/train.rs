@@ -229,7 +229,7 @@ pub(super) fn text(out: &Path, outcome: &Outcome) -> String {
         outcome.end.name().replace('-', " "),
     );
     for (name, loss) in super::losses(&outcome.model) {
-        t.push_str(&format!(", {name} loss {loss:.6}"));
+        t.push_str(&format!(", {name} loss {loss:.3e}"));
     }
     let rate = thousands(rows_per_s(outcome) as u64);
     t.push_str(&format!(", {:.1} s, {rate} rows/s", seconds(outcome)));
