@@ -2,7 +2,7 @@
 
 use crate::Failure;
 use peelnet_bench::chart::{Line, Scale, Svg, line_chart};
-use peelnet_core::files::{Kind, shown, write_whole};
+use peelnet_core::files::{Kind, holds, shown, write_whole};
 use peelnet_train::EpochReport;
 use std::path::Path;
 
@@ -30,7 +30,7 @@ fn form(path: &Path) -> Result<Form, Failure> {
     let svg_kind = Kind {
         name: "a loss curve (SVG)",
         // Other charts stay.
-        is: |head| Svg::is_ours(head) && head.windows(LOSS.len()).any(|w| w == LOSS.as_bytes()),
+        is: |head| Svg::is_ours(head) && holds(head, LOSS.as_bytes()),
     };
     match path.extension().and_then(|e| e.to_str()) {
         Some(e) if e.eq_ignore_ascii_case("csv") => Ok((csv_kind, csv)),

@@ -5,7 +5,7 @@ use std::{
     fmt,
 };
 
-use peelnet_core::files::Kind;
+use peelnet_core::files::{Kind, holds};
 use peelnet_core::mlp::{Activation, Layer, Mlp};
 use safetensors::tensor::TensorView;
 use safetensors::{Dtype, SafeTensors};
@@ -28,7 +28,7 @@ pub const KIND: Kind = Kind {
     is: |head| {
         let json = head.get(8..).unwrap_or_default();
         let entry = format!("\"{KEY}\":");
-        json.starts_with(b"{") && json.windows(entry.len()).any(|w| w == entry.as_bytes())
+        json.starts_with(b"{") && holds(json, entry.as_bytes())
     },
 };
 

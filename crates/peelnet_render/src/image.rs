@@ -1,7 +1,7 @@
 //! The drawn frame in memory, and its three file formats.
 
 use crate::RenderError;
-use peelnet_core::files::{Kind, STDOUT};
+use peelnet_core::files::{Kind, STDOUT, holds};
 use peelnet_core::srgb;
 use std::path::Path;
 
@@ -75,8 +75,7 @@ fn is_our_png(head: &[u8]) -> bool {
 /// Whether a file says before its pixels, in its format's own field, that peelnet wrote it. Programs write paths into others, which may hold
 /// the word.
 fn is_marked(head: &[u8], mark: &[u8]) -> bool {
-    let mut words = head[..head.len().min(1024)].windows(mark.len());
-    words.any(|word| word == mark)
+    holds(&head[..head.len().min(1024)], mark)
 }
 
 /// Linear RGB and coverage, row 0 on top.

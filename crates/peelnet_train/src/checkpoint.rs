@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use burn::tensor::{Device, Tensor, TensorData};
-use peelnet_core::files::Kind;
+use peelnet_core::files::{Kind, holds};
 use safetensors::tensor::{Dtype, SafeTensors, TensorView};
 use serde::{Deserialize, Serialize};
 
@@ -23,7 +23,7 @@ pub const FILES: [(&str, Kind); 3] = [
         "state.safetensors",
         Kind {
             name: "the state of a training",
-            is: |head| head.windows(KEY.len()).any(|w| w == KEY.as_bytes()),
+            is: |head| holds(head, KEY.as_bytes()),
         },
     ),
     ("best.safetensors", peelnet_model::KIND),
@@ -45,13 +45,8 @@ fn is_unfinished(head: &[u8]) -> bool {
         serde_json::from_str(text["__metadata__"][KEY].as_str()?).ok()
     };
     header().is_some_and(|h| {
-        let since_best = h
-            .best_epoch
-            .map(|best| h.epochs.saturating_sub(best as usize));
-        let has_stopped = |patience: u32| since_best.is_some_and(|n| n >= patience as usize);
-        let is_ended =
-            h.epochs >= h.config.epochs as usize || h.config.patience.is_some_and(has_stopped);
-        h.epochs > 0 && !is_ended
+        let epochs = u32::try_from(h.epochs).unwrap_or(u32::MAX);
+        epochs > 0 && h.config.end_after(epochs, h.best_epoch).is_none()
     })
 }
 

@@ -8,6 +8,7 @@ use std::ops::Range;
 
 use crate::error::TrainError;
 use crate::network::Shape;
+use crate::report::End;
 
 /// Everything that decides the weights, except the data. Saved in the model file and beside the checkpoints.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -141,6 +142,15 @@ const BELOW_1: &str = "give a number from 0 to below 1";
 const BETWEEN: &str = "give a share between 0 and 1";
 
 impl Config {
+    /// Why training ends after so many epochs, of which this one was the best; `None` where it goes on.
+    pub(crate) fn end_after(&self, epochs: u32, best: Option<u32>) -> Option<End> {
+        let since_best = best.map(|best| epochs.saturating_sub(best));
+        match (self.patience, since_best) {
+            (Some(patience), Some(n)) if n >= patience => Some(End::StoppedEarly),
+            _ => (epochs >= self.epochs).then_some(End::Finished),
+        }
+    }
+
     /// The settings that a recipe declares, and the defaults of Adam.
     pub fn for_recipe(recipe: Recipe) -> Self {
         let (network, budget) = (recipe.network, recipe.budget);

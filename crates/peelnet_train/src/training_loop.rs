@@ -124,14 +124,9 @@ impl Run<'_> {
         let resumed_from = self.options.resume.then(|| epochs(&progress));
         let mut saved = Instant::now();
         let end = loop {
-            let done = epochs(&progress);
-            if let (Some(patience), Some((best, _))) = (self.config.patience, &progress.best)
-                && done - best >= patience
-            {
-                break End::StoppedEarly;
-            }
-            if done >= self.config.epochs {
-                break End::Finished;
+            let best = progress.best.as_ref().map(|(epoch, _)| *epoch);
+            if let Some(end) = self.config.end_after(epochs(&progress), best) {
+                break end;
             }
             let epoch = self.threads.install(|| self.epoch(&progress));
             let (adam, report) = match epoch {

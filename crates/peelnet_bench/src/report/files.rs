@@ -51,8 +51,8 @@ pub fn kind_of(name: &str) -> Kind {
 }
 
 fn contains(head: &[u8], texts: &[&str]) -> bool {
-    let head = String::from_utf8_lossy(head);
-    texts.iter().all(|text| head.contains(text))
+    let mut texts = texts.iter();
+    texts.all(|text| peelnet_core::files::holds(head, text.as_bytes()))
 }
 
 /// Writes a file whole, creating its folder if need be.

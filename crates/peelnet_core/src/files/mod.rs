@@ -15,7 +15,7 @@ fn invalid(why: &str) -> std::io::Error {
 pub use input::{check_size, open, read, read_head};
 pub use output::{
     Found, Kind, META, Moving, Outputs, Refused, STDOUT, Unfinished, check_file, check_is_folder,
-    check_outside_datasets, folder_of, identity, is_remote, moving, remove_replaced,
+    check_outside_datasets, folder_of, holds, identity, is_remote, moving, remove_replaced,
     remove_unfinished, temporary, to_stdout, write_whole,
 };
 pub use text::{

@@ -409,6 +409,11 @@ fn plain(error: io::Error) -> io::Error {
     code.map_or_else(|| error.kind().into(), io::Error::from_raw_os_error)
 }
 
+/// Whether bytes hold a word, which is not empty.
+pub fn holds(bytes: &[u8], word: &[u8]) -> bool {
+    bytes.windows(word.len()).any(|w| w == word)
+}
+
 /// A kind of file that peelnet writes, known by its content: an output replaces only a file of its own kind.
 #[derive(Clone, Copy, Debug)]
 pub struct Kind {

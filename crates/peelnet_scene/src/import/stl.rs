@@ -9,7 +9,7 @@ use crate::{
     mesh::{Mesh, area_of, key_of},
 };
 use glam::Vec3;
-use peelnet_core::files::{counted, printable};
+use peelnet_core::files::{counted, holds, printable};
 use rayon::prelude::*;
 use std::{collections::HashMap, path::Path};
 
@@ -64,8 +64,8 @@ pub(super) fn read(path: &Path, bytes: &[u8], files: &mut Files<'_>) -> Result<M
 /// Whether a file is text: its first word is `solid`, as that of many binary files is, and a facet or the end follows it soon.
 fn is_text(bytes: &[u8]) -> bool {
     let start = bytes[..bytes.len().min(4096)].to_ascii_lowercase();
-    let has = |word: &[u8]| start.windows(word.len()).any(|w| w == word);
-    start.trim_ascii_start().starts_with(b"solid") && (has(b"facet") || has(b"endsolid"))
+    let is_solid = start.trim_ascii_start().starts_with(b"solid");
+    is_solid && (holds(&start, b"facet") || holds(&start, b"endsolid"))
 }
 
 /// Reads a file of text, a statement a line. Normals are not used: many files have wrong ones.
