@@ -18,7 +18,7 @@ use peelnet_render::{
 };
 use peelnet_scene::Scene;
 use sha2::{Digest as _, Sha256};
-use std::{collections::BTreeMap, path::Path, sync::LazyLock};
+use std::{path::Path, sync::LazyLock};
 
 pub use crate::stage::EXACT;
 
@@ -150,25 +150,26 @@ static SHADERS: LazyLock<String> = LazyLock::new(|| json_hash(&peelnet_render::s
 
 /// Methods of which rows were drawn by other shaders than this program's, or with a network that does not ship.
 pub fn drawn_otherwise(rows: &[Row]) -> Vec<&str> {
-    let is_shipped = |method: &str, network: &str| {
-        let recipe = Recipe::for_method(method.split(':').next().unwrap_or_default());
-        let model = recipe.and_then(|recipe| Model::shipped(recipe).ok());
-        model.and_then(|m| m.hash().ok()).as_deref() == Some(network)
+    let shipped = Recipe::ALL
+        .iter()
+        .filter_map(|&r| Model::shipped(r).ok()?.hash().ok());
+    let shipped: Vec<String> = shipped.collect();
+    let is_own = |row: &&Row| {
+        row.shaders == *SHADERS && row.network.iter().all(|network| shipped.contains(network))
     };
-    let mut known = BTreeMap::new();
-    let others = rows.iter().filter(|row| {
-        let pair = (row.method.as_str(), row.network.as_deref());
-        let is_own = known.entry(pair);
-        let is_own = is_own.or_insert_with(|| pair.1.is_none_or(|n| is_shipped(pair.0, n)));
-        row.shaders != *SHADERS || !*is_own
-    });
-    each_once(others.map(|row| row.method.as_str()))
+    each_once(
+        rows.iter()
+            .filter(|row| !is_own(row))
+            .map(|row| row.method.as_str()),
+    )
 }
 
 struct Entry<'a> {
     method: MethodSpec,
     name: String,
     model: Option<&'a Model>,
+    /// Its hash.
+    network: Option<String>,
     /// None of a method that is composited on the CPU.
     ready: Option<Ready>,
 }
@@ -203,7 +204,7 @@ pub(crate) fn compare(
         for (row, entry) in rows.iter_mut().zip(&entries) {
             row.adapter.clone_from(&gpu.info.name);
             row.shaders.clone_from(&SHADERS);
-            row.network = entry.model.and_then(|m| m.hash().ok());
+            row.network.clone_from(&entry.network);
             row.scene_content.clone_from(&scene.content);
         }
         partial.push(rows)?;
@@ -247,10 +248,12 @@ fn prepare<'a>(
             continue;
         }
         let mut models = plan.models.iter();
+        let model = models.find(|m| m.meta.recipe.method == method.name());
         entries.push(Entry {
             method: method.clone(),
             name,
-            model: models.find(|m| m.meta.recipe.method == method.name()),
+            model,
+            network: model.and_then(|m| m.hash().ok()),
             ready,
         });
     }

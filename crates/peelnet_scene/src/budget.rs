@@ -87,8 +87,7 @@ impl Budget {
         let texels = u64::from(width) * u64::from(height);
         let more = self.image_bytes.saturating_mul(TEXELS_A_BYTE);
         let most = FREE_TEXELS.saturating_add(more).min(MAX_TEXELS);
-        let what = "texels";
-        take(&mut self.texels, texels, most, what).map_err(|e| match most {
+        take(&mut self.texels, texels, most, "texels").map_err(|e| match most {
             MAX_TEXELS => e,
             _ => format!("{e} ({FREE_TEXELS}, and {TEXELS_A_BYTE} for each byte of its images)"),
         })

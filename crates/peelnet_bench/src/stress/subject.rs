@@ -15,9 +15,6 @@ pub struct Subject {
     pub(super) guarantees: Guarantees,
 }
 
-/// Parameters that say how a method keeps what it knows.
-const KEPT: [&str; 2] = ["colors=", "cell="];
-
 impl Subject {
     pub fn new(method: MethodSpec, learned: Option<(LearnedWeight, Model)>) -> Self {
         Self {
@@ -27,13 +24,13 @@ impl Subject {
         }
     }
 
-    /// Every method in every precision, and the points of its curve that keep colours or blocks of pixels otherwise. Of those with a
+    /// Every method in every precision, and the points of its curve that keep colours otherwise. Of those with a
     /// number, one in the middle of its curve.
     pub fn all_methods() -> Vec<MethodSpec> {
         let mut all: Vec<MethodSpec> = Vec::new();
         for method in METHODS.iter().filter(|m| m.cpu_only.is_none()) {
             let default = MethodSpec::representative(method);
-            let kept_otherwise = |ending: &&&str| KEPT.iter().any(|name| ending.contains(name));
+            let kept_otherwise = |ending: &&&str| ending.contains("colors=");
             let points = method.curve.iter().filter(kept_otherwise);
             // A test of the list of methods parses every point.
             all.extend(points.filter_map(|ending| format!("{}{ending}", method.name).parse().ok()));

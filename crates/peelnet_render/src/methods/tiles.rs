@@ -25,7 +25,7 @@ pub(super) fn draw(p: &mut Passes<'_>, around: &SmallTexture, after_cuts: bool) 
     let quantiles = p.target(quantiles);
     let bins = p.geometry("passes::tiles::bins", Needs::OPACITY);
     // Opaque surfaces are compared with at the pixel that is looked at.
-    bins.features(["tiles"]).writes(small.iter().copied());
+    bins.every(around.every).writes(small.iter().copied());
     bins.after_cuts |= after_cuts;
     let of_pixels = p.compute("passes::tiles::seen", count);
     // The last is as large as the texture that is made.

@@ -154,7 +154,7 @@ pub(crate) struct Pass {
     parameters: Option<String>,
     reads: Vec<Handle>,
     writes: Vec<Handle>,
-    /// As [`Target::every`] of its targets, where it has none.
+    /// As [`Target::every`], of what it draws.
     every: u32,
     /// Draws it in the first frame and where the camera jumped only: what it writes stays for the frames that follow.
     pub after_cuts: bool,
@@ -485,12 +485,10 @@ impl<'a> Passes<'a> {
             });
         }
         let (mut colors, mut states, mut samples) = (Vec::new(), Vec::new(), 1);
-        let mut every = pass.every;
         for written in &pass.writes {
             let resource = &self.resources[written.0];
             match (resource, &resources[written.0]) {
                 (Resource::Target(target), Allocated::Texture(view)) => {
-                    every = target.every;
                     colors.push(Some((view.clone(), target.blend.start())));
                     states.push(Some(target.state()));
                 }
@@ -545,7 +543,7 @@ impl<'a> Passes<'a> {
         Ok(PlannedPass {
             label: pass.label.clone(),
             colors,
-            every,
+            every: pass.every,
             after_cuts: pass.after_cuts,
             work,
         })

@@ -28,7 +28,7 @@ pub(super) struct PlannedPass {
     pub label: String,
     /// What it writes with what that is cleared to; `None` for the output.
     pub colors: Vec<Option<(wgpu::TextureView, [f64; 4])>>,
-    /// [`Target::every`](super::Target::every) of those.
+    /// It draws one pixel in so many, both ways.
     pub every: u32,
     /// Whether it is drawn in the first frame and where the camera jumped only.
     pub after_cuts: bool,
