@@ -94,7 +94,7 @@ impl Training {
 ///     schedule: "constant" or "one-cycle".
 ///     hidden: Widths of the hidden layers.
 ///     patience: Stop after this many epochs without a lower held-out loss, and keep the best.
-///     loss: "image", "contributions", "weighted-transmittance" or "transmittance", of small, medium and large.
+///     loss: "image", "contributions", "weighted-transmittance" or "transmittance", of recipes that learn from whole pixels; None: the recipe's.
 ///     seed: Of initial weights, order and split. The same seed gives the same weights.
 ///     max_rows: Rows that are used at most; of more, whole pixels are drawn from the seed.
 ///     stream: Use all rows, read again from a scratch file beside `out` in every epoch, for datasets larger than memory.
@@ -113,7 +113,7 @@ impl Training {
 ///     A Training: the model and the history. After Ctrl-C or an exception of the callback the checkpoint of `out` holds
 ///     the last whole epoch, and no model file was written.
 #[pyfunction]
-#[pyo3(signature = (data, *, recipe="medium", out=None, epochs=None, batch=None, lr=None, schedule=None, hidden=None, patience=None, loss="image", seed=1, max_rows=None, stream=false, buffer_rows=None, split="scene", threads=None, resume=false, loss_curve=None, callback=None, progress=None, force=false))]
+#[pyo3(signature = (data, *, recipe="medium", out=None, epochs=None, batch=None, lr=None, schedule=None, hidden=None, patience=None, loss=None, seed=1, max_rows=None, stream=false, buffer_rows=None, split="scene", threads=None, resume=false, loss_curve=None, callback=None, progress=None, force=false))]
 #[allow(clippy::too_many_arguments, reason = "keyword arguments of Python")]
 pub fn train<'py>(
     py: Python<'py>,
@@ -126,7 +126,7 @@ pub fn train<'py>(
     schedule: Option<&str>,
     hidden: Option<Vec<usize>>,
     patience: Option<u32>,
-    loss: &str,
+    loss: Option<&str>,
     seed: u64,
     max_rows: Option<u64>,
     stream: bool,
@@ -153,12 +153,13 @@ pub fn train<'py>(
             .unwrap_or(defaults.schedule),
         hidden: hidden.unwrap_or(defaults.hidden),
         patience: patience.or(defaults.patience),
-        loss: loss.parse().map_err(|e: String| wrong(e))?,
         max_rows: max_rows.unwrap_or(defaults.max_rows),
         buffer_rows: stream.then(|| buffer_rows.unwrap_or(DEFAULT_BUFFER_ROWS)),
         split: named("split", SPLITS, split).map_err(wrong)?,
         ..defaults
     };
+    let loss = loss.map(str::parse).transpose().map_err(wrong::<String>)?;
+    let config = config.minimising(loss);
     config.check().map_err(raised)?;
     let loss_curve = loss_curve.unwrap_or_default();
     let mut outputs = Outputs::new(("force=True", force), NO_INPUTS);

@@ -75,21 +75,26 @@ fn every_loss_trains() {
     let dir = tempfile::tempdir().unwrap();
     let dataset = lists(&dir.path().join("d"), 4096, 6);
     let mut files = std::collections::BTreeSet::new();
-    for loss in PixelLoss::ALL {
+    // A share, and T itself.
+    let recipes = [Recipe::SMALL, Recipe::NMT];
+    for (recipe, loss) in recipes
+        .iter()
+        .flat_map(|&r| PixelLoss::ALL.map(|loss| (r, loss)))
+    {
         assert_eq!(loss.to_string().parse(), Ok(loss));
-        let mut config = Config::for_recipe(Recipe::SMALL);
-        (config.epochs, config.batch, config.loss) = (10, 128, loss);
+        let mut config = Config::for_recipe(recipe);
+        (config.epochs, config.batch, config.loss) = (10, 128, Some(loss));
         // A few worlds would be too few to judge by.
         config.split = SplitBy::Pixel;
         let data = TrainingData::from_datasets(&config, std::slice::from_ref(&dataset)).unwrap();
         let out = dir
             .path()
-            .join(loss.to_string())
+            .join(format!("{recipe}-{loss}"))
             .with_extension("safetensors");
         let outcome = train(&config, &data, &RunOptions::new(&out, &NEVER), |_| {}).unwrap();
         let epochs = outcome.history.iter();
         let losses: Vec<f64> = epochs.filter_map(|e| e.held_out_loss).collect();
-        assert!(losses[9] < 0.9 * losses[0], "{loss}: {losses:?}");
+        assert!(losses[9] < 0.9 * losses[0], "{recipe} {loss}: {losses:?}");
         let layer = Model::load(&out).unwrap().mlp.layers.remove(0);
         let weights: Vec<u32> = layer.weights.iter().map(|w| w.to_bits()).collect();
         assert!(files.insert(weights));

@@ -17,7 +17,7 @@ const PATH_METHODS: &str = "abuffer,painter-object,painter-triangle,wboit-eq9,mb
 const ONE_PASS_METHODS: &str = "abuffer,painter-object:sort=off,wboit-eq7,wboit-eq8,wboit-eq9,wboit-eq10,wboit-inverse-power,mboit4,deep-anchored-small,deep-small,deep-medium,deep-medium:range=frame,one,one:range=last,one:range=frame,one-wide,one-wide:range=last,one-wide:range=frame,deep-one,deep-one:range=last,deep-one:range=frame,deep-one-wide,deep-one-wide:range=last,deep-one-wide:range=frame";
 
 /// One or two settings of each family, and all that is learned.
-const COMPARED_METHODS: &str = "abuffer,linked-list,painter-triangle,wboit-eq9,wboit-inverse-power,mboit4,mboit4:own=out,mboit6,mboit8,mboit-trig-2,mboit-trig-3,wavelet-3:bounds=pixel,bins-8,bins-16,avboit,kbuffer-4,kbuffer-4:colors=u8,hybrid-8,stochastic-16,deep-thesis,nmt:targets=f16,dfaoit,slabs:keep=small,deep-small,deep-small:range=frame,slabs:keep=medium,deep-medium,slabs,deep-large,deep-anchored-small,deep-anchored-medium,one,deep-one,deep-one:range=last,one-wide,deep-one-wide";
+const COMPARED_METHODS: &str = "abuffer,linked-list,painter-triangle,wboit-eq9,wboit-inverse-power,mboit4,mboit4:own=out,mboit6,mboit8,mboit-trig-2,mboit-trig-3,wavelet-3:bounds=pixel,bins-8,bins-16,avboit,kbuffer-4,kbuffer-4:colors=u8,hybrid-8:colors=u8,stochastic-16,deep-thesis,nmt:targets=f16,dfaoit,slabs:keep=small,deep-small,deep-small:range=frame,slabs:keep=medium,deep-medium,slabs,deep-large,deep-anchored-small,deep-anchored-medium,one,deep-one,deep-one:range=last,one-wide,deep-one-wide";
 
 /// What is judged with a surface apart from all others.
 const APART_METHODS: &str = "abuffer,wboit-eq9,mboit4,mboit6,wavelet-3:bounds=pixel,bins-8,bins-16,avboit,kbuffer-4,slabs:keep=small,slabs:keep=medium,slabs,deep-anchored-medium,deep-small,deep-medium,deep-large,deep-medium:range=boxes,deep-medium:range=frame,one,one-wide,deep-one,deep-one-wide,deep-one:range=last,deep-one-wide:range=last,deep-one:range=frame,deep-one-wide:range=frame";
@@ -31,6 +31,7 @@ const STEPS: &str = "
     held-out-all | bench <held-out> --size 512x384 --views 1 --frames 3 | results.json.xz table.md pareto.svg pareto-mean.svg
     held-out | bench <held-out> --size 512x384 --views 1 --frames 3 --methods <compared> | results.json.xz table.md pareto.svg pareto-mean.svg
     fresh | bench <fresh> --size 512x384 --views 1 --frames 3 --methods <compared> | results.json.xz table.md
+    fresh-meshes | bench <fresh-meshes> --size 512x384 --views 1 --frames 3 --methods <compared> | results.json.xz table.md
     validation | bench <validation> --size 512x384 --views 1 --frames 3 | results.json.xz table.md
     one-pass | bench <held-out> --size 512x384 --views 1 --frames 5 --methods <one-pass> | results.json.xz table.md pareto-mean.svg
     apart-none | bench <apart none> --size 256x192 --views 1 --frames 0 --methods <apart> | table.md
@@ -69,6 +70,11 @@ fn filled(line: &str) -> Result<String, String> {
         if line.contains(&name) {
             line = line.replace(&name, &apart::scenes(kind, held_out()?)?.join(" "));
         }
+    }
+    if line.contains("<fresh-meshes>") {
+        let found = files_in("out/meshes", |name| name.ends_with("-fresh"));
+        let found = found.map_err(|e| format!("{e}; cargo xtask meshes fetches them"))?;
+        line = line.replace("<fresh-meshes>", &found.join(" "));
     }
     Ok(line
         .replace("<held-out>", &held_out()?.join(" "))
@@ -132,17 +138,15 @@ pub fn measure(machine: &str, names: &[&str]) -> Outcome {
         "\n{times}{together:>7.1} s  together; results are in {}",
         into.display()
     );
-    let stale = stale(&program, &into)?;
-    if !stale.is_empty() {
-        println!(
-            "of other shaders or networks than this program's, measure them again: {}",
-            stale.join(" ")
-        );
-    }
     println!(
         "next: PEELNET_UPDATE=1 cargo nextest run -p peelnet_tests generated_tables puts them into the documents"
     );
-    Ok(())
+    match stale(&program, &into)?.join(" ") {
+        none if none.is_empty() => Ok(()),
+        stale => Err(format!(
+            "of other shaders or networks than this program's, measure them again: {stale}"
+        )),
+    }
 }
 
 /// Steps whose kept rows are of other shaders or networks than this program's.

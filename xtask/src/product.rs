@@ -56,8 +56,8 @@ const RECIPES: [(&str, &str); 10] = [
     ("one-wide", "--epochs 40"),
     ("anchored-small", "--lr 0.016 --epochs 80"),
     ("anchored-medium", "--lr 0.016 --epochs 80"),
-    ("nmt", "--max-rows 6000000"),
-    ("dfaoit", ""),
+    ("nmt", ""),
+    ("dfaoit", "--epochs 160"),
     // The recipe's own are the thesis's published settings, which `peelnet run` repeats.
     (
         "thesis",

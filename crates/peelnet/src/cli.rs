@@ -238,9 +238,9 @@ pub struct TrainArgs {
     /// Learning rate over the run: constant, or one cycle that rises for a fifth of the steps and falls to nothing [default: the recipe's]
     #[arg(long, value_name = "SCHEDULE", value_parser = one_of(SCHEDULES.to_vec()))]
     pub schedule: Option<Schedule>,
-    /// What small, medium and large minimise: image, contributions, weighted-transmittance or transmittance
-    #[arg(long, value_name = "LOSS", default_value = "image")]
-    pub loss: PixelLoss,
+    /// What recipes that learn from whole pixels minimise: image, contributions, weighted-transmittance or transmittance [default: the recipe's]
+    #[arg(long, value_name = "LOSS")]
+    pub loss: Option<PixelLoss>,
     /// Seed of initial weights, order and split
     #[arg(long, value_name = "S", default_value_t = 1)]
     pub seed: u64,

@@ -127,13 +127,10 @@ const PIXELS: Budget = Budget {
     validation: 0.1,
 };
 
-/// Of the competitors, as `cargo xtask train-models --search` chose it for them. Batches are rows: as many fragments as ours have on
-/// average.
-const ROWS: Budget = Budget {
+/// Of the competitors: half and twice the rate, and twice as many epochs, gain nothing (docs/learned-weights.md).
+const COMPETITORS: Budget = Budget {
     epochs: 80,
-    batch: 8192,
-    chunk: 2048,
-    learning_rate: 1.6e-2,
+    learning_rate: 3.2e-2,
     ..PIXELS
 };
 
@@ -164,7 +161,7 @@ const COMPETITOR: Declaration = Declaration {
     output: Output::Transmittance,
     sums: SumPrecision::Exact,
     network: relu(&[32, 16], Activation::Sigmoid),
-    budget: ROWS,
+    budget: COMPETITORS,
     loss: None,
     ..FRACTIONS
 };
@@ -273,6 +270,8 @@ impl Recipe {
         name: "nmt",
         method: "nmt",
         inputs: &NmtInputs,
+        // Its authors' own; with the loss of the image its answers are weights, and no transmittances.
+        loss: Some(PixelLoss::Transmittance),
         ..COMPETITOR
     });
 
@@ -282,10 +281,6 @@ impl Recipe {
         method: "dfaoit",
         inputs: &DfaoitInputs,
         output: Output::Color,
-        budget: Budget {
-            batch: 1024,
-            ..ROWS
-        },
         ..COMPETITOR
     });
 
@@ -389,7 +384,7 @@ mod tests {
                 assert!(!names[..i].contains(name), "{recipe} reads {name} twice");
             }
             let fractions = recipe.output.is_fraction();
-            assert_eq!(recipe.loss.is_some(), fractions, "{recipe}");
+            assert!(!fractions || recipe.loss.is_some(), "{recipe}");
             let separate = recipe.output == Output::AnchoredShareSeparateEnds;
             assert_eq!(recipe.inputs.known_apart(), separate, "{recipe}");
             assert!(!fractions || names[0] == "root_absorbance", "{recipe}");

@@ -64,9 +64,9 @@ pub struct Config {
     /// all are in memory. A training that streams uses all rows.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub buffer_rows: Option<u64>,
-    /// What recipes that learn from whole pixels minimise.
-    #[serde(default, skip_serializing_if = "is_default")]
-    pub loss: PixelLoss,
+    /// What recipes that learn from whole pixels minimise, where it is not what they declare.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub loss: Option<PixelLoss>,
 }
 
 /// The learning rate over a run.
@@ -177,8 +177,15 @@ impl Config {
             patience: None,
             max_rows: DEFAULT_MAX_ROWS,
             buffer_rows: None,
-            loss: recipe.loss.unwrap_or_default(),
+            loss: None,
         }
+    }
+
+    /// The same, with another loss than the recipe's.
+    #[must_use]
+    pub fn minimising(self, loss: Option<PixelLoss>) -> Self {
+        let loss = loss.filter(|_| loss != self.recipe.loss);
+        Self { loss, ..self }
     }
 
     /// # Errors
@@ -251,9 +258,9 @@ impl Config {
                 return bad(setting, fraction.to_string(), hint);
             }
         }
-        if self.recipe.loss.is_none() && self.loss != PixelLoss::default() {
+        if let Some(loss) = self.loss.filter(|_| self.recipe.loss.is_none()) {
             let hint = "leave it out: this recipe does not learn from whole pixels";
-            return bad("loss", self.loss.to_string(), hint);
+            return bad("loss", loss.to_string(), hint);
         }
         Ok(())
     }
@@ -300,7 +307,7 @@ mod tests {
             ("beta2", |c| c.beta2 = 1.0),
             ("held_out", |c| c.held_out = 1.0),
             ("patience", |c| c.patience = Some(0)),
-            ("loss", |c| c.loss = PixelLoss::Contributions),
+            ("loss", |c| c.loss = Some(PixelLoss::Image)),
         ];
         for (name, spoil) in spoiled {
             let mut config = good.clone();

@@ -206,7 +206,7 @@ pub(crate) fn gather<'a>(
                     Examples::Rows(rows) => {
                         for row in rows {
                             data.push_row(row.inputs, row.targets);
-                            data.end_example(row.weight, subset);
+                            data.end_example(1.0, subset);
                         }
                     }
                     Examples::Pixel(fragments) => {

@@ -1,19 +1,21 @@
 //! Examples on a device, and what training minimises.
 //!
-//! Recipes that learn from rows minimise the (weighted) squared error of the outputs: the thesis's way to train, and its successors'.
+//! Recipes that learn from rows minimise the squared error of the outputs: the thesis's way to train, and `dfaoit`'s.
 //!
 //! Recipes that learn from whole pixels minimise a [`PixelLoss`]. The network answers with the share `s_i` of every fragment between a
 //! pixel's ends. Its unnormalised contribution is `k_i = α_i e^(−b_n − r_i s_i)`, and what of the coverage is left to distribute, `R`, goes
 //! to each in proportion: `p̂_i = R k_i / (A + Σ k)`, where `A` is what the ends contribute when they are normalised with the rest (0 with
 //! separate ends). The loss of a pixel is the squared error of its colour, `|Σ (p̂_i − α_i T_i) c_i|² / 3` over all of its
-//! fragments: what a user of the image sees, surfaces of one object weighing together because they share a colour.
+//! fragments: what a user of the image sees, surfaces of one object weighing together because they share a colour. Networks that answer
+//! with T itself have `k_i = α_i T_i`.
 
 use std::ops::Range;
 
 use burn::tensor::{Device, IndexingUpdateOp, Int, Tensor, TensorData};
 use peelnet_core::guards::SUM_FLOOR;
-use peelnet_model::PixelLoss;
+use peelnet_model::{Output, PixelLoss};
 
+use crate::config::Config;
 use crate::network::Network;
 use crate::normalise::Normalisation;
 use crate::table::{ALPHA, COLOR, EXACT, KNOWN, LEFT, RESIDUAL, SUM, TrainingData};
@@ -92,7 +94,7 @@ impl Window {
         &self,
         network: &Network,
         range: Range<usize>,
-        loss: PixelLoss,
+        config: &Config,
     ) -> Tensor<1> {
         let fixed = self.fixed.as_ref();
         let fixed = fixed.map(|t| t.clone().narrow(1, range.start, range.len()));
@@ -101,7 +103,7 @@ impl Window {
                 let (from, to) = (first[range.start] as usize, first[range.end] as usize);
                 let rows = self.rows.clone().narrow(1, from, to - from);
                 let pixel = pixel.clone().narrow(0, from, to - from) - range.start as i32;
-                self.pixel_loss(network, rows, fixed, pixel, loss)
+                self.pixel_loss(network, rows, fixed, pixel, config)
             }
             (_, weight) => {
                 let rows = self.rows.clone().narrow(1, range.start, range.len());
@@ -122,14 +124,18 @@ impl Window {
         rows: Tensor<2>,
         fixed: Tensor<2>,
         pixel: Tensor<1, Int>,
-        loss: PixelLoss,
+        config: &Config,
     ) -> Tensor<1> {
+        let loss = config.loss.or(config.recipe.loss).unwrap_or_default();
         let known = self.inputs + 1;
         let row = |k: usize| rows.clone().narrow(0, known + k, 1);
         let exact = || rows.clone().narrow(0, self.inputs, 1);
         let column = |k: usize| fixed.clone().narrow(0, k, 1);
-        let fraction = network.forward(rows.clone().narrow(0, 0, self.inputs));
-        let through = (row(RESIDUAL) * fraction).neg().exp();
+        let answer = network.forward(rows.clone().narrow(0, 0, self.inputs));
+        let through = match config.recipe.output {
+            Output::Transmittance => answer,
+            _ => (row(RESIDUAL) * answer).neg().exp(),
+        };
         let contribution = row(ALPHA) * through.clone();
         let squares = |error: Tensor<2>| {
             (column(WEIGHT).select(1, pixel.clone()) * error.clone() * error).sum()

@@ -260,7 +260,7 @@ impl Run<'_> {
         self.feed.pass(subset, None, |window| {
             sum += total(self.chunks(0..window.examples, |range| {
                 let network = Network::new(&self.shape, parameters);
-                window.loss_sum(&network, range, self.config.loss)
+                window.loss_sum(&network, range, self.config)
             }));
             Ok(())
         })?;
@@ -271,7 +271,7 @@ impl Run<'_> {
     fn gradient(&self, window: &Window, parameters: &Tensor<1>, range: Range<usize>) -> Tensor<1> {
         let chunks = self.chunks(range, |range| {
             let network = Network::tracked(&self.shape, parameters);
-            let loss = window.loss_sum(&network, range, self.config.loss);
+            let loss = window.loss_sum(&network, range, self.config);
             network.gradient(loss)
         });
         let sum = chunks.into_iter().reduce(|sum, chunk| sum + chunk);

@@ -72,12 +72,12 @@ fn config(args: &TrainArgs) -> Result<Config, Failure> {
         schedule: args.schedule.unwrap_or(recipe.schedule),
         hidden: args.hidden.clone().unwrap_or(recipe.hidden),
         patience: args.patience.or(recipe.patience),
-        loss: args.loss,
         max_rows: args.max_rows,
         buffer_rows: args.stream.then_some(args.buffer_rows),
         split: args.split,
         ..recipe
     };
+    let config = config.minimising(args.loss);
     config.check()?;
     Ok(config)
 }

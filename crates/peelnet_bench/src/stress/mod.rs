@@ -123,10 +123,8 @@ pub fn stress(
             }
         }
     }
-    let with_networks = subjects.iter().any(|s| s.learned.is_some());
     for (trial, number) in trials.iter().zip(0..) {
-        let scales = SCALES.iter().filter(|_| with_networks);
-        let scaled: Vec<Scene> = scales.map(|&s| trial.scene.scaled(s)).collect();
+        let scaled = SCALES.map(|s| trial.scene.scaled(s));
         let mut stand = Stand::new(gpu, trial, &scaled)?;
         let scene = format!("{}-{number}-{}", case.id, trial.scene.name);
         findings.scene = format!("{}: ", trial.scene.name);
@@ -278,7 +276,7 @@ impl<'a> Stand<'a> {
             }
             self.stage.renderer.submit(Submission::Listed);
         }
-        if subject.learned.is_some() {
+        if subject.guarantees.per_pixel {
             for (stage, exact_scaled) in &self.scaled {
                 let other = stage.draw(method, options.clone(), &stage.scene.views[0])?;
                 let exact = [&self.exact[0], exact_scaled];

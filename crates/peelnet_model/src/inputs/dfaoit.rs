@@ -60,7 +60,6 @@ impl NetworkInputs for DfaoitInputs {
         Examples::Rows(vec![RowExample {
             inputs: values(&DFAOIT, &layers),
             targets: exact.map(|c| c.min(1.0)).to_vec(),
-            weight: 1.0,
         }])
     }
 }

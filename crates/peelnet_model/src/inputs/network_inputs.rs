@@ -185,6 +185,4 @@ pub struct RowExample {
     pub inputs: Vec<f64>,
     /// What the network should answer.
     pub targets: Vec<f64>,
-    /// Weight of the row's loss.
-    pub weight: f32,
 }

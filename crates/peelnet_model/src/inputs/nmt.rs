@@ -1,7 +1,7 @@
-//! `nmt`: four raw moments of a pixel, and a depth. Every row is an example.
+//! `nmt`: four raw moments of a pixel, and a depth. Whole pixels are examples.
 
 use super::{feature::*, network_inputs::*, surroundings::*};
-use peelnet_core::methods::nmt::FragmentMoments;
+use peelnet_core::methods::{known::KnownFragment, nmt::FragmentMoments};
 
 /// The inputs of the network, in the published order: depth, the number of fragments, `b_0`, and `b_1 … b_4`.
 pub static NMT: [&Feature<FragmentMoments>; 7] = [
@@ -39,16 +39,12 @@ impl NetworkInputs for NmtInputs {
     }
 
     fn examples(&self, pixel: &PeeledPixel<'_>) -> Examples {
-        let fragments = pixel.observed.fragments;
-        let all = FragmentMoments::all(fragments, &pixel.observed.warp).into_iter();
-        let rows = all.zip(fragments).zip(pixel.transmittance);
-        let rows = rows.map(|((fragment, &(_, alpha)), &t)| RowExample {
-            inputs: values(&NMT, &fragment),
-            targets: vec![t.into()],
-            // An error of T is fragment as much as the fragment is opaque.
-            weight: alpha * alpha,
+        let all = FragmentMoments::all(pixel.observed.fragments, &pixel.observed.warp);
+        let fragments = all.iter().map(|fragment| KnownFragment {
+            unknown: Some(values(&NMT, fragment)),
+            ..KnownFragment::known(0.0)
         });
-        Examples::Rows(rows.collect())
+        Examples::Pixel(fragments.collect())
     }
 }
 

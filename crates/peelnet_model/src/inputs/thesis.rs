@@ -50,7 +50,6 @@ impl NetworkInputs for ThesisInputs {
         let rows = rows.zip(pixel.transmittance).map(|(row, &t)| RowExample {
             inputs: values(&THESIS, &row),
             targets: vec![t.into()],
-            weight: 1.0,
         });
         Examples::Rows(rows.collect())
     }

@@ -160,7 +160,8 @@ pub enum Property {
     Hull,
     /// A pixel with one fragment is exact. Value: the error, linear light.
     Single,
-    /// Neither the reverse nor a shuffled order of drawing changes anything. Value: the largest change, linear light.
+    /// Neither the reverse nor a shuffled order of drawing changes anything. Value: the change that is farthest beyond its limit, linear light or
+    /// on the display, of 255.
     Order,
     /// Exact methods agree with compositing in 64 bits. Value: the error, linear light.
     Exact,
@@ -267,6 +268,19 @@ impl KnownFailure {
         let reason = "half floats end at 65,504: after 22 layers of weight 3e3 nothing is left but the coverage (McGuire & Bavoil 2013)";
         Self::new(Property::Hull, cases, reason).when(half_sums)
     }
+
+    /// Weights of depth in scene units: another unit, another image.
+    pub(crate) const fn in_scene_units(cases: &'static str) -> Self {
+        let reason = "its weight is a function of depth in scene units";
+        Self::new(Property::Scale, cases, reason)
+    }
+
+    /// Of no matter to what is drawn: such networks are exported in 32 bits.
+    pub(crate) const MAGNIFIED: Self = Self::new(
+        Property::Half,
+        "half-float",
+        "weights of the hidden layers up to 10 and more magnify the roundings of half floats, which the limit counts in the last layer alone",
+    );
 
     /// Weights that do not depend on the layers in front.
     pub(crate) const BLIND: Self = Self::translucent(

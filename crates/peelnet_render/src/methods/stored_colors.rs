@@ -82,7 +82,11 @@ pub(super) fn guarantees(spec: &MethodSpec, full: Guarantees) -> Guarantees {
 /// What does not hold of colours in bytes.
 pub(super) const fn in_bytes(property: Property, cases: &'static str) -> KnownFailure {
     let reason = "opacities and roots of colours are stored in bytes, which err by 1/510 each, and light beyond 1 is cut off";
-    KnownFailure::new(property, cases, reason).when(|s| COLORS.word(s) == "u8")
+    KnownFailure::new(property, cases, reason).when(are_bytes)
+}
+
+pub(super) fn are_bytes(spec: &MethodSpec) -> bool {
+    COLORS.word(spec) == "u8"
 }
 
 #[cfg(test)]

@@ -58,7 +58,7 @@ fn streamed(config: &Config, dataset: &Dataset, folder: &Path) -> TrainingData {
     TrainingData::streamed(config, datasets, folder, &NEVER, |_, _| {}).unwrap()
 }
 
-/// Recipes of every kind of examples: rows, weighed rows, pixels.
+/// Recipes of every kind of examples: rows, pixels of which T is asked, weighed rows, pixels of which shares are asked.
 const RECIPES: [Recipe; 4] = [Recipe::THESIS, Recipe::NMT, Recipe::DFAOIT, Recipe::MEDIUM];
 
 #[test]

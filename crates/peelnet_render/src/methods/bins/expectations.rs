@@ -22,6 +22,12 @@ pub(super) const METHOD: Expectations = Expectations {
     }),
     known_failures: &[
         KnownFailure::swallowed("deep"),
+        KnownFailure::new(
+            Property::Scale,
+            "coplanar",
+            "a depth at the border of two bins is rounded into one or the other",
+        )
+        .when(|s| s.number() == 8 && of_pixel(s)),
         KnownFailure::translucent(
             "absorbance ends at 4, as shipped: three layers of 0.99 let 1.8 % through each, not 1 %",
         )

@@ -5,8 +5,6 @@ use crate::methods::{
 };
 use peelnet_core::methods::deep;
 
-const IN_SCENE_UNITS: &str = "reads depth in scene units (Papakostas 2022)";
-
 pub(super) const METHOD: Expectations = Expectations {
     guarantees: |s| Guarantees {
         close_estimate: true,
@@ -24,12 +22,10 @@ pub(super) const METHOD: Expectations = Expectations {
     known_failures: &[
         KnownFailure::swallowed("alpha-tiny deep"),
         KnownFailure::BLIND,
-        KnownFailure::new(
-            Property::Scale,
+        KnownFailure::in_scene_units(
             "apart alpha-near-one alpha-one coplanar deep far grazing high-alpha intersecting moving-camera thin-slab two-layers wide-range",
-            IN_SCENE_UNITS,
         ),
-        KnownFailure::new(Property::Scale, "alpha-tiny passing", IN_SCENE_UNITS).when(half_sums),
+        KnownFailure::in_scene_units("alpha-tiny passing").when(half_sums),
         KnownFailure::new(
             Property::Transmittance,
             "isolated two-layers coplanar",

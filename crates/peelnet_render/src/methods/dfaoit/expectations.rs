@@ -19,6 +19,7 @@ pub(super) const METHOD: Expectations = Expectations {
     }),
     known_failures: &[
         COINCIDENT,
+        KnownFailure::MAGNIFIED,
         KnownFailure::new(
             Property::Dark,
             "high-alpha",

@@ -35,14 +35,21 @@ const fn method(name: &'static str, about: &'static str) -> Method {
 
 pub(super) const PLAIN: Method = Method {
     parameters: &[TARGETS, COLORS],
-    curve: &["-2", "-4", "-8", "-4:colors=f16", "-4:colors=u8"],
+    curve: &[
+        "-2",
+        "-4",
+        "-8",
+        "-4:colors=f16",
+        "-4:colors=u8",
+        "-8:colors=u8",
+    ],
     expectations: expectations::PLAIN,
     ..method("kbuffer", "the K nearest exactly, the rest blended by eq 5")
 };
 
 pub(super) const HYBRID: Method = Method {
     parameters: &[TARGETS, WEIGHT, COLORS],
-    curve: &["-2", "-4", "-8"],
+    curve: &["-2", "-4", "-8", "-8:colors=u8"],
     expectations: expectations::HYBRID,
     ..method("hybrid", "the K nearest exactly, the rest blended by eq 6")
 };

@@ -38,7 +38,14 @@ pub(super) const ESTIMATED: Expectations = Expectations {
     ..Expectations::DEFAULT
 };
 
+/// Depths that are rounded otherwise at another scale.
+const fn magnified(cases: &'static str) -> KnownFailure {
+    let reason = "where layers nearly coincide or let next to nothing through, what is made of moments magnifies the roundings of depth";
+    KnownFailure::new(Property::Scale, cases, reason)
+}
+
 pub(super) const FOUR: Expectations = ESTIMATED.failing(&[
+    magnified("high-alpha").when(half_statistics),
     KnownFailure::swallowed("deep near-overflow"),
     BLURRED,
     KnownFailure::new(
@@ -56,23 +63,26 @@ pub(super) const FOUR: Expectations = ESTIMATED.failing(&[
 ]);
 
 pub(super) const SIX: Expectations = ESTIMATED.failing(&[
+    magnified("passing"),
+    magnified("apart high-alpha").when(half_statistics),
     KnownFailure::swallowed("deep"),
     BLURRED.when(half_statistics),
     jumping("passing moving-camera"),
     KnownFailure::unsettled(Property::Transmittance, "isolated two-layers"),
     KnownFailure::unsettled(
         Property::Order,
-        "apart deep emissive grazing high-alpha intersecting moving-camera opaque-mix two-layers passing",
+        "alpha-near-one apart deep emissive grazing high-alpha intersecting moving-camera opaque-mix two-layers passing",
     ),
     KnownFailure::new(
         Property::Order,
-        "passing wide-range",
+        "wide-range",
         "six moments in 32 bits: where points come close, roundings of the sums move the others",
     )
     .when(|s| !half_statistics(s)),
 ]);
 
 pub(super) const EIGHT: Expectations = ESTIMATED.failing(&[
+    magnified("apart high-alpha intersecting moving-camera").when(half_statistics),
     KnownFailure::swallowed("deep"),
     KnownFailure::swallowed("near-overflow").when(|s| own_out(s) && half_sums(s)),
     KnownFailure::reordered("deep").when(|s| own_out(s) && half_sums(s) && !half_statistics(s)),
@@ -87,6 +97,8 @@ pub(super) const EIGHT: Expectations = ESTIMATED.failing(&[
 ]);
 
 pub(super) const TRIGONOMETRIC: Expectations = ESTIMATED.failing(&[
+    magnified("high-alpha intersecting moving-camera").when(|s| s.number() == 3),
+    magnified("apart passing").when(|s| s.number() == 3 && half_statistics(s)),
     KnownFailure::swallowed("deep near-overflow"),
     KnownFailure::swallowed("alpha-tiny").when(|s| s.number() == 2 && half_statistics(s)),
     BLURRED.when(|s| !own_out(s) && (s.number() != 3 || half_statistics(s))),
@@ -98,7 +110,7 @@ pub(super) const TRIGONOMETRIC: Expectations = ESTIMATED.failing(&[
     .when(|s| !own_out(s) && !half_statistics(s)),
     KnownFailure::unsettled(
         Property::Order,
-        "deep emissive high-alpha intersecting moving-camera passing",
+        "deep high-alpha intersecting moving-camera passing",
     ),
     KnownFailure::unsettled(Property::Order, "apart")
         .when(|s| s.number() == 3 && half_statistics(s)),

@@ -1,17 +1,5 @@
-use super::{KEEP, RANGE, reference};
+use super::reference;
 use crate::methods::prelude::*;
-
-/// By more than two display steps, of a thousand layers.
-fn is_reordered(spec: &MethodSpec) -> bool {
-    match KEEP.word(spec) {
-        "medium" => true,
-        keep => keep == "large" && is_of_tiles(spec),
-    }
-}
-
-fn is_of_tiles(spec: &MethodSpec) -> bool {
-    RANGE.word(spec) == "tiles"
-}
 
 pub(super) const SLABS: Expectations = Expectations {
     guarantees: |_| Guarantees::TINTED,
@@ -34,11 +22,7 @@ const ROUNDED_OTHERWISE: KnownFailure = KnownFailure::new(
 
 const SWALLOWED: KnownFailure = KnownFailure::swallowed("deep");
 
-pub(super) const METHOD: Expectations = SLABS.failing(&[
-    SWALLOWED,
-    KnownFailure::reordered("deep").when(is_reordered),
-    BORDERS,
-]);
+pub(super) const METHOD: Expectations = SLABS.failing(&[SWALLOWED, BORDERS]);
 
 pub(super) const SMALL: Expectations = SLABS.failing(&[
     SWALLOWED,

@@ -12,7 +12,7 @@ pub(super) const METHOD: Expectations = Expectations {
     }),
     known_failures: &[
         KnownFailure::swallowed("deep near-overflow"),
-        KnownFailure::reordered("deep near-overflow"),
+        KnownFailure::reordered("deep"),
         KnownFailure::swallowed("alpha-tiny").when(|s| s.number() >= 64 && half_sums(s)),
         KnownFailure::translucent(
             "noise: one sample of sixteen weighs 0.06 (Enderton et al. 2010)",

@@ -36,20 +36,38 @@ const fn unweighed_lamp(property: Property) -> KnownFailure {
     KnownFailure::new(property, "emissive", reason).when(half_sums)
 }
 
+/// Where weights of equations 7 and 8, and the two steepest of other authors, differ between scales by more than a step of a display.
+const STEEP: KnownFailure = KnownFailure::in_scene_units(
+    "alpha-near-one alpha-one alpha-zero apart coplanar deep emissive far grazing high-alpha intersecting moving-camera \
+     opaque-mix passing thin-slab two-layers wide-range",
+);
+
+/// Where half floats lose digits of weights that are otherwise at another scale.
+const fn lost_at_scale(cases: &'static str) -> KnownFailure {
+    KnownFailure::in_scene_units(cases).when(half_sums)
+}
+
 pub(super) const EQ7: Expectations = WEIGHTED.failing(&[
+    STEEP,
+    lost_at_scale("alpha-tiny near-overflow"),
     KnownFailure::swallowed("alpha-tiny deep"),
     KnownFailure::overflowing("near-overflow"),
-    KnownFailure::reordered("deep"),
     KnownFailure::BLIND,
 ]);
 
 pub(super) const EQ8: Expectations = WEIGHTED.failing(&[
+    STEEP,
+    lost_at_scale("alpha-tiny near-overflow"),
     KnownFailure::swallowed("deep"),
     KnownFailure::overflowing("near-overflow"),
     KnownFailure::BLIND,
 ]);
 
 pub(super) const EQ9: Expectations = WEIGHTED.failing(&[
+    KnownFailure::in_scene_units(
+        "alpha-one apart coplanar far high-alpha intersecting moving-camera opaque-mix thin-slab two-layers wide-range",
+    ),
+    lost_at_scale("alpha-tiny deep emissive near-overflow"),
     KnownFailure::overflowing("deep near-overflow"),
     KnownFailure::reordered("deep"),
     KnownFailure::BLIND,
@@ -64,6 +82,8 @@ pub(super) const EQ10: Expectations = WEIGHTED.failing(&[
 ]);
 
 pub(super) const PAPAKOSTAS: Expectations = WEIGHTED.failing(&[
+    KnownFailure::in_scene_units("apart far thin-slab wide-range"),
+    lost_at_scale("alpha-tiny deep emissive"),
     KnownFailure::swallowed("deep near-overflow"),
     KnownFailure::BLIND,
 ]);
@@ -74,6 +94,8 @@ const fn vanishing(property: Property) -> KnownFailure {
 }
 
 pub(super) const INVERSE_POWER: Expectations = WEIGHTED.failing(&[
+    STEEP,
+    lost_at_scale("alpha-tiny isolated"),
     KnownFailure::swallowed("deep near-overflow"),
     vanishing(Property::Hull),
     vanishing(Property::Dark),
@@ -88,6 +110,9 @@ const fn faint(property: Property, cases: &'static str) -> KnownFailure {
 }
 
 pub(super) const SMOKE: Expectations = WEIGHTED.failing(&[
+    STEEP,
+    KnownFailure::in_scene_units("alpha-tiny"),
+    lost_at_scale("isolated near-overflow"),
     KnownFailure::swallowed("deep near-overflow"),
     KnownFailure::reordered("deep"),
     faint(Property::Hull, "far isolated"),
