@@ -104,28 +104,53 @@ function webglProblem( { backend }, model, targets, count, lacks ) {
 }
 
 /**
+ * Lets a renderer draw the objects of bundles one by one. The field is a method of three.js's WebGPU back end: where there is none, there are no bundles.
+ *
+ * @returns {() => void} ends it
+ */
+export function leaveOutBundles( { backend } ) {
+
+	const { beginBundle } = backend;
+
+	if ( beginBundle === undefined ) return () => {};
+
+	const isOwn = Object.hasOwn( backend, 'beginBundle' );
+
+	backend.beginBundle = undefined;
+
+	return () => isOwn ? ( backend.beginBundle = beginBundle ) : delete backend.beginBundle;
+
+}
+
+// Who wants to know of a renderer's lost device. The renderer holds nobody who no longer wants to.
+const listeners = /*@__PURE__*/ new WeakMap();
+
+/**
  * Calls back when the renderer's device is lost. A renderer that is disposed loses nothing.
  *
  * @returns {() => void} stops watching
  */
 export function watchDevice( renderer, onLost ) {
 
-	const before = renderer.onDeviceLost;
-	let watching = true;
+	let all = listeners.get( renderer );
 
-	renderer.onDeviceLost = ( info ) => {
+	if ( all === undefined ) {
 
-		before.call( renderer, info );
+		const before = renderer.onDeviceLost;
 
-		if ( watching ) onLost( 'The graphics device was lost. Nothing can be drawn until a new renderer and a new peelnetPass are made.' );
+		all = new Set();
+		listeners.set( renderer, all );
+		renderer.onDeviceLost = ( info ) => {
 
-	};
+			before.call( renderer, info );
+			all.forEach( ( listener ) => listener( 'The graphics device was lost. Nothing can be drawn until a new renderer and a new peelnetPass are made.' ) );
 
-	return () => {
+		};
 
-		// What another has put over it since then stays, and calls this one.
-		watching = false;
+	}
 
-	};
+	all.add( onLost );
+
+	return () => all.delete( onLost );
 
 }

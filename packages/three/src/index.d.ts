@@ -1,4 +1,4 @@
-import type { Camera, Material, PassNode, Scene } from 'three/webgpu';
+import type { Camera, Material, Object3D, PassNode, PassNodeOptions, Scene } from 'three/webgpu';
 
 /** How a target blends: `dst + src`, `max(dst, src)` or `dst * (1 - src)`. */
 export type PeelnetBlend = 'add' | 'max' | 'transmit';
@@ -65,7 +65,7 @@ export interface PeelnetModel {
 	glsl?: string | null;
 }
 
-export interface PeelnetPassOptions {
+export interface PeelnetPassOptions extends PassNodeOptions {
 	model: PeelnetModel;
 	/**
 	 * Where depths are told apart: among those seen around each pixel, at one more pass of an eighth of the width and height (the default), in
@@ -74,11 +74,12 @@ export interface PeelnetPassOptions {
 	range?: 'pixel' | 'frame' | 'last';
 	/** `[near, far]` of the distance along the view axis. The default is the range of the transparent objects' boxes in view. */
 	depthRange?: readonly [ number, number ] | null;
+	/** Whether an object of a material that can be drawn by the learned weights is; else it is drawn after them, sorted. The default is `isWanted`. */
+	filter?: ( object: Object3D, material: Material ) => boolean;
 	/** Called once for each problem; the scene is then drawn sorted. The default writes to the console. */
 	onProblem?: ( message: string ) => void;
-	/** Samples a pixel. Only 0 and 1 are supported, so pass 0 where the renderer has `antialias: true`. */
+	/** Samples a pixel. Only 0, the default, and 1 are supported. */
 	samples?: number;
-	[ option: string ]: unknown;
 }
 
 /** A PassNode that draws a scene's transparent objects in any order. */
@@ -92,6 +93,7 @@ export class PeelnetPassNode extends PassNode {
 	/** May be set at any time. */
 	range: 'pixel' | 'frame' | 'last';
 	depthRange: readonly [ number, number ] | null;
+	filter: ( object: Object3D, material: Material ) => boolean;
 	onProblem: ( message: string ) => void;
 	/** What keeps the model from being drawn, or null. */
 	readonly problem: string | null;
@@ -101,11 +103,20 @@ export class PeelnetPassNode extends PassNode {
 /** A pass that draws a scene with learned order-independent transparency. */
 export function peelnetPass( scene: Scene, camera: Camera, options: PeelnetPassOptions ): PeelnetPassNode;
 
-/** Whether a material is drawn by the learned weights. Others are drawn with the opaque objects, sorted. */
+/**
+ * Whether a material can be drawn by the learned weights. Others are drawn as three.js draws them: additive ones and those that ignore depth after
+ * it, the rest with the opaque objects.
+ */
 export function isOrderIndependent( material: Material ): boolean;
+
+/** Whether neither an object's nor its material's `userData.peelnet` is false. */
+export function isWanted( object: Object3D, material: Material ): boolean;
 
 /** The version of `PeelnetDescription` that this package reads. */
 export const FORMAT_VERSION: 1;
+
+/** Loads an exported model, `<url>.json`, `<url>.wgsl` and, where there is one, `<url>.es.glsl`. Rejects with what is wrong. */
+export function loadModel( url: string | URL ): Promise<PeelnetModel>;
 
 /** What is wrong with a model, as one sentence, or null where nothing is. */
 export function modelProblem( model: unknown ): string | null;

@@ -1,2 +1,2 @@
-export { PeelnetPassNode, isOrderIndependent, peelnetPass } from './pass.js';
-export { FORMAT_VERSION, modelProblem } from './model.js';
+export { PeelnetPassNode, isOrderIndependent, isWanted, peelnetPass } from './pass.js';
+export { FORMAT_VERSION, loadModel, modelProblem } from './model.js';

@@ -53,9 +53,12 @@ export function modelProblem( model ) {
 
 	}
 
-	if ( model.wgsl.includes( 'fn peelnet_zeta_in(' ) === false ) return `The recipe "${ recipe }" cannot be drawn by this package: its text has no peelnet_zeta_in.`;
+	const unsupported = ( what ) => `The recipe "${ recipe }" cannot be drawn by this package: ${ what }. Networks of small, medium, large, one, one-wide, anchored-small and anchored-medium can.`;
 
-	const unsupported = ( what ) => `The recipe "${ recipe }" cannot be drawn by this package: ${ what }.`;
+	if ( model.wgsl.includes( 'fn peelnet_zeta_in(' ) === false ) return unsupported( 'its text has no peelnet_zeta_in' );
+
+	if ( /^\s*enable\s+f16/m.test( model.wgsl ) ) return `The text of the model "${ recipe }" needs 16-bit numbers, which three.js enables for no text: export it without --precision f16.`;
+
 	const passes = list( description.passes );
 
 	if ( passes.length === 0 ) return unsupported( 'it describes no pass' );
@@ -127,3 +130,31 @@ export function passesOf( { around, passes }, range ) {
 
 /** Whether a pass writes colours, and so needs light. */
 export const isShaded = ( pass ) => /\brgb\b/.test( [ pass.compute, ...pass.targets.map( ( target ) => target.write ) ].join( ';' ) );
+
+/**
+ * Loads an exported model: `<url>.json`, `<url>.wgsl` and, where there is one, `<url>.es.glsl`, which `peelnet export` writes beside one another.
+ *
+ * @param {string | URL} url - without an ending, such as `models/model`
+ * @returns {Promise<{ description: object, wgsl: string, glsl: string | null }>}
+ */
+export async function loadModel( url ) {
+
+	const get = async ( ending, isNeeded ) => {
+
+		const response = await fetch( `${ url }.${ ending }` );
+
+		if ( response.ok === false && isNeeded ) throw new Error( `@peelnet/three: ${ url }.${ ending }: ${ response.status } ${ response.statusText }` );
+
+		return response.ok ? response : null;
+
+	};
+
+	const [ description, wgsl, glsl ] = await Promise.all( [ get( 'json', true ), get( 'wgsl', true ), get( 'es.glsl', false ) ] );
+	const model = { description: await description.json(), wgsl: await wgsl.text(), glsl: glsl === null ? null : await glsl.text() };
+	const problem = modelProblem( model );
+
+	if ( problem !== null ) throw new Error( `@peelnet/three: ${ url }: ${ problem }` );
+
+	return model;
+
+}

@@ -1,9 +1,9 @@
 // The pass that replaces three.js's sorted drawing of transparent objects by a learned, order-independent one.
 
-import { Matrix4, NormalBlending, PassNode, RenderTarget, RendererUtils, Vector2, Vector3, Vector4 } from 'three/webgpu';
+import { AdditiveBlending, Matrix4, NormalBlending, PassNode, RendererUtils, Vector2, Vector3, Vector4 } from 'three/webgpu';
 import { renderGroup, uniform } from 'three/tsl';
 import { DepthRange, warped } from './depth-range.js';
-import { blendAlike, deviceProblem, drawnPasses, watchDevice } from './device.js';
+import { blendAlike, deviceProblem, drawnPasses, leaveOutBundles, watchDevice } from './device.js';
 import { modelProblem } from './model.js';
 import { releasePasses } from './release.js';
 import { Stages } from './stages.js';
@@ -21,24 +21,33 @@ let _sceneState;
 
 const report = ( message ) => console.error( `@peelnet/three: ${ message }` );
 
+const isNode = ( value ) => value?.isNode === true;
+
+// Light that adds to what is seen, and what ignores depth, such as labels and gizmos: drawn after all others, sorted.
+const isOver = ( material ) => material.transparent === true && ( material.depthTest === false || material.blending === AdditiveBlending );
+
 /**
- * Whether a material is drawn by the learned weights. Others (additive, transmissive, …) are drawn with the opaque objects, sorted.
+ * Whether a material is drawn by the learned weights. Others are drawn as three.js draws them: additive ones and those that ignore depth after
+ * it, the rest (transmissive, with a fragment or a depth of their own, …) with the opaque objects.
  */
 export function isOrderIndependent( material ) {
 
-	return material.transparent === true && material.blending === NormalBlending
-		&& ! ( material.transmission > 0 ) && material.transmissionNode?.isNode !== true && material.backdropNode?.isNode !== true;
+	return material.transparent === true && material.blending === NormalBlending && material.depthTest !== false
+		&& ! ( material.transmission > 0 ) && ! [ 'transmissionNode', 'backdropNode', 'fragmentNode', 'depthNode' ].some( ( name ) => isNode( material[ name ] ) );
 
 }
 
+/** The default of the option `filter`: whether neither an object's nor its material's `userData.peelnet` is false. */
+export const isWanted = ( object, material ) => object.userData.peelnet !== false && material.userData.peelnet !== false;
+
 // Draws a full-screen quad between passes, whose settings it leaves.
-function drawQuad( renderer, { target, quad } ) {
+function drawQuad( renderer, { target, quad, node = null } ) {
 
 	const { opaque } = renderer;
 	const draw = renderer.getRenderObjectFunction();
 
 	renderer.setRenderObjectFunction( null );
-	renderer.setMRT( null );
+	renderer.setMRT( node );
 	renderer.setRenderTarget( target );
 	renderer.opaque = true;
 	quad.render( renderer );
@@ -56,14 +65,18 @@ export class PeelnetPassNode extends PassNode {
 
 	}
 
-	constructor( scene, camera, { model, range = 'pixel', depthRange = null, onProblem = report, ...options } = {} ) {
+	constructor( scene, camera, { model, range = 'pixel', depthRange = null, filter = isWanted, onProblem = report, ...options } = {} ) {
 
-		super( PassNode.COLOR, scene, camera, options );
+		// A renderer with multisampling draws it, too: statistics of a pixel have no samples.
+		super( PassNode.COLOR, scene, camera, { samples: 0, ...options } );
 
 		this.isPeelnetPassNode = true;
 
 		/** `[near, far]` of z that replaces the range of the objects' boxes, for what a shader moves out of them. */
 		this.depthRange = depthRange;
+
+		/** Whether an object of a material is drawn by the learned weights, where `isOrderIndependent` says that it can be; else it is drawn after them. */
+		this.filter = filter;
 
 		/** Called once for each problem. The scene is then drawn as three.js draws it, sorted. */
 		this.onProblem = onProblem;
@@ -82,12 +95,9 @@ export class PeelnetPassNode extends PassNode {
 		this._viewFromWorld = null;
 		this._unwatch = null;
 
-		// The finished image. The target of the base class holds what lies below the transparent objects.
-		this._finished = new RenderTarget( 1, 1, { depthBuffer: false, samples: 0 } );
-		this._finished.texture.name = 'output';
-
 		this._drawBelow = ( object, ...rest ) => this._drawOrKeep( object, rest );
 		this._drawTransparent = ( object, ...rest ) => this._drawKept( object, rest );
+		this._drawOver = ( object, ...rest ) => this._isOver( object, rest[ 3 ] ) && this._renderer.renderObject( object, ...rest );
 
 	}
 
@@ -119,13 +129,15 @@ export class PeelnetPassNode extends PassNode {
 
 	}
 
-	setup( builder ) {
+	/** Compiles what the pass draws, by drawing a frame of it. */
+	async compileAsync( renderer ) {
 
-		super.setup( builder );
+		await super.compileAsync( renderer );
 
-		this._finished.texture.type = builder.renderer.getOutputBufferType();
+		this.renderTarget.texture.type = renderer.getOutputBufferType();
+		this.updateBefore( { renderer } );
 
-		return this.getTextureNode();
+		await renderer.backend.device?.queue.onSubmittedWorkDone();
 
 	}
 
@@ -133,7 +145,6 @@ export class PeelnetPassNode extends PassNode {
 
 		super.setSize( width, height );
 
-		this._finished.setSize( this.renderTarget.width, this.renderTarget.height );
 		this._stages?.setSize( this.renderTarget );
 
 	}
@@ -142,6 +153,9 @@ export class PeelnetPassNode extends PassNode {
 
 		const { renderer } = frame;
 
+		// A bundle draws what it recorded, which may be of another pass.
+		const endBundles = leaveOutBundles( renderer );
+
 		this._prepare( renderer );
 
 		_rendererState = RendererUtils.saveRendererState( renderer, _rendererState );
@@ -149,19 +163,16 @@ export class PeelnetPassNode extends PassNode {
 		// What lies below: opaque objects, and transparent ones that no weight can blend. The others are only noted.
 		this._renderer = renderer;
 		this._depths.reset();
-		this._kept = 0;
+		this._kept = this._over = 0;
 		this._viewFromWorld = this.camera.matrixWorldInverse;
 		renderer.setRenderObjectFunction( this._drawBelow );
 		super.updateBefore( frame );
 
-		const drawn = this._kept > 0;
-
-		if ( drawn ) this._drawPasses( renderer );
-
-		this._show( drawn ? this._finished.texture : this.renderTarget.texture );
+		if ( this._kept + this._over > 0 ) this._drawTransparents( renderer );
 
 		RendererUtils.restoreRendererState( renderer, _rendererState );
 		this._renderer = null;
+		endBundles();
 
 	}
 
@@ -170,6 +181,8 @@ export class PeelnetPassNode extends PassNode {
 
 		renderer.getDrawingBufferSize( _size );
 
+		// A session may start and end at any time, and outputs may be added.
+		if ( this._isXR !== renderer.xr.isPresenting || this._outputs !== this._mrt ) this._stale = true;
 		if ( this._stale ) this._build( renderer );
 
 		this.setSize( _size.width, _size.height );
@@ -198,6 +211,8 @@ export class PeelnetPassNode extends PassNode {
 
 		this._release( renderer );
 		this._stale = false;
+		this._isXR = renderer.xr.isPresenting;
+		this._outputs = this._mrt;
 		this._unwatch ??= watchDevice( renderer, ( message ) => this._fail( message ) );
 		this.problem = null;
 
@@ -208,8 +223,8 @@ export class PeelnetPassNode extends PassNode {
 		this._stages = new Stages( this._model, drawnPasses( renderer, this._model, this._range ), {
 			isGlsl: renderer.backend.isWebGPUBackend !== true,
 			depthTexture: this.renderTarget.depthTexture,
-			below: this.renderTarget.texture,
 			span: this._span,
+			outputs: this._outputs,
 			fromLast: this._range === 'last'
 		} );
 		this._seen = null;
@@ -228,11 +243,13 @@ export class PeelnetPassNode extends PassNode {
 
 		if ( this._range === 'last' && this._model.description.around?.last === undefined ) return `The recipe "${ this._model.description.recipe }" does not read what the last frame shows: set the range to "pixel" or "frame".`;
 
-		if ( this.renderTarget.samples > 1 ) return `Multisampling is not supported: a model's statistics must not be averaged over the ${ this.renderTarget.samples } samples of a pixel. Pass { samples: 0 }, and smooth edges afterwards, for example with fxaa().`;
+		if ( this.renderTarget.samples > 1 ) return `Multisampling is not supported: a model's statistics must not be averaged over the ${ this.renderTarget.samples } samples of a pixel. Leave out { samples }, and smooth edges afterwards, for example with fxaa().`;
 
 		if ( this.renderTarget.depthTexture === null ) return 'The pass needs a depth buffer: leave out { depthBuffer: false }.';
 
-		if ( renderer.xr.isPresenting === true ) return 'XR is not supported.';
+		if ( this._outputs !== null && renderer.backend.isWebGPUBackend !== true && ! renderer.backend.drawBuffersIndexedExt ) return 'This device cannot blend over one of several outputs: WebGL 2 needs the extension OES_draw_buffers_indexed.';
+
+		if ( renderer.xr.isPresenting === true ) return 'XR is not supported: what is transparent is drawn sorted while a session lasts.';
 
 		return deviceProblem( renderer, this._model, this._range );
 
@@ -249,16 +266,39 @@ export class PeelnetPassNode extends PassNode {
 
 		const material = rest[ 3 ];
 
-		if ( this._stages !== null && isOrderIndependent( material ) ) {
+		if ( this._stages !== null && this._isKept( object, material ) ) {
 
 			this._kept ++;
-			this._depths.add( object, this._viewFromWorld );
+
+			if ( this.depthRange === null ) this._depths.add( object, this._viewFromWorld );
+
+		} else if ( this._stages !== null && this._isOver( object, material ) ) {
+
+			this._over ++;
 
 		} else {
 
+			const { depthWrite } = material;
+
+			// Glass behind it is not hidden by what can be seen through.
+			if ( this._stages !== null && material.transparent === true ) material.depthWrite = false;
+
 			this._renderer.renderObject( object, ...rest );
+			material.depthWrite = depthWrite;
 
 		}
+
+	}
+
+	_isKept( object, material ) {
+
+		return isOrderIndependent( material ) && this.filter( object, material );
+
+	}
+
+	_isOver( object, material ) {
+
+		return isOver( material ) || ( material.transparent === true && this.filter( object, material ) === false );
 
 	}
 
@@ -266,7 +306,7 @@ export class PeelnetPassNode extends PassNode {
 
 		const material = rest[ 3 ];
 
-		if ( isOrderIndependent( material ) === false ) return;
+		if ( this._isKept( object, material ) === false ) return;
 
 		const { depthWrite, forceSinglePass } = material;
 
@@ -281,30 +321,57 @@ export class PeelnetPassNode extends PassNode {
 
 	}
 
-	_drawPasses( renderer ) {
+	/** Draws what is kept, and over it what lies over all, with what `pass()` draws the scene with. */
+	_drawTransparents( renderer ) {
 
 		const { scene, camera } = this;
 		const { mask } = camera.layers;
 		const { sortObjects, contextNode, lighting: rendererLighting } = renderer;
 		const lighting = this.lighting ?? rendererLighting;
 		const isLit = lighting.enabled;
-		const endBlending = blendAlike( renderer );
 
 		if ( this._layers !== null ) camera.layers.mask = this._layers.mask;
 		if ( this.contextNode !== null ) renderer.contextNode = this._getContextNode( renderer );
 
-		this._writeSpan();
 		_sceneState = RendererUtils.resetSceneState( scene, _sceneState );
+		scene.overrideMaterial = this.overrideMaterial ?? _sceneState.overrideMaterial;
 		renderer.lighting = lighting;
+		renderer.opaque = false;
+		renderer.transparent = true;
+
+		if ( this._kept > 0 ) this._drawPasses( renderer, lighting, isLit );
+
+		if ( this._over > 0 ) {
+
+			renderer.setRenderObjectFunction( this._drawOver );
+			renderer.autoClear = false;
+			renderer.sortObjects = sortObjects;
+			renderer.setRenderTarget( this.renderTarget );
+			renderer.setMRT( this._mrt );
+			renderer.render( scene, camera );
+
+		}
+
+		renderer.lighting = rendererLighting;
+		renderer.sortObjects = sortObjects;
+		renderer.contextNode = contextNode;
+		RendererUtils.restoreSceneState( scene, _sceneState );
+		camera.layers.mask = mask;
+
+	}
+
+	_drawPasses( renderer, lighting, isLit ) {
+
+		const { passes, next, over } = this._stages;
+		const endBlending = blendAlike( renderer );
+
+		this._writeSpan();
+
+		const isCut = next === null || this._isCut();
 
 		renderer.setRenderObjectFunction( this._drawTransparent );
 		renderer.autoClear = renderer.autoClearColor = true;
-		renderer.autoClearDepth = renderer.autoClearStencil = false;
-		renderer.opaque = renderer.sortObjects = false;
-		renderer.transparent = true;
-
-		const { passes, next, quad } = this._stages;
-		const isCut = next === null || this._isCut();
+		renderer.autoClearDepth = renderer.autoClearStencil = renderer.sortObjects = false;
 
 		for ( const { first, target, node, shaded, afterCuts, then } of passes ) {
 
@@ -315,22 +382,18 @@ export class PeelnetPassNode extends PassNode {
 			lighting.enabled = isLit && shaded;
 			renderer.setRenderTarget( target );
 			renderer.setMRT( node );
-			renderer.render( scene, camera );
+			renderer.render( this.scene, this.camera );
 
 			if ( then !== undefined ) drawQuad( renderer, then );
 
 		}
 
+		lighting.enabled = isLit;
 		endBlending();
 
-		lighting.enabled = isLit;
-		renderer.lighting = rendererLighting;
-		renderer.sortObjects = sortObjects;
-		renderer.contextNode = contextNode;
-		RendererUtils.restoreSceneState( scene, _sceneState );
-		camera.layers.mask = mask;
-
-		drawQuad( renderer, { target: this._finished, quad } );
+		renderer.autoClear = false;
+		drawQuad( renderer, { ...over, target: this.renderTarget } );
+		renderer.autoClear = true;
 
 		if ( next === null ) return;
 
@@ -373,16 +436,6 @@ export class PeelnetPassNode extends PassNode {
 
 	}
 
-	/** Which texture the pass's node shows. */
-	_show( texture ) {
-
-		if ( this._textures.output === texture ) return;
-
-		this._textures.output = texture;
-		this._textureNodes.output?.updateTexture();
-
-	}
-
 	_release( renderer ) {
 
 		if ( this._stages === null ) return;
@@ -398,7 +451,9 @@ export class PeelnetPassNode extends PassNode {
 		if ( this._stages !== null ) this._release( this._built );
 
 		this._unwatch?.();
-		this._finished.dispose();
+		// Who draws it again, as hot reloading does, gets it again.
+		this._unwatch = null;
+		this._stale = true;
 		super.dispose();
 
 	}

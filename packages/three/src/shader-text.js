@@ -94,18 +94,17 @@ export function passText( model, pass, first, drawn, isGlsl ) {
 
 }
 
-/** The resolve as one function of the opaque image and of what it reads: colour, and coverage in alpha. */
+/** The resolve as one function of what it reads: colour times coverage, and coverage in alpha. */
 export function resolveText( model, drawn, isGlsl ) {
 
 	const language = isGlsl ? GLSL : WGSL;
 	const { resolve, resolve_reads: names } = model.description;
 
-	return language.function( 'peelnet_pass_resolve', [ [ 'below', 'vec4' ], [ 'pixel', 'vec2' ], ...parameters( names, drawn ) ], 'vec4', [
-		'\t' + language.constant( 'vec3', 'background', 'below.rgb' ),
+	return language.function( 'peelnet_pass_resolve', [ [ 'pixel', 'vec2' ], ...parameters( names, drawn ) ], 'vec4', [
+		'\t' + language.constant( 'vec3', 'background', `${ language.type( 'vec3' ) }(0.0)` ),
 		...reads( language, model, names, drawn ),
 		...noise( language, model, isGlsl ),
-		'\t' + language.constant( 'vec4', 'resolved', language.expression( resolve ) ),
-		`\treturn ${ language.type( 'vec4' ) }(resolved.rgb, resolved.a + below.a * (1.0 - resolved.a));`
+		`\treturn ${ language.expression( resolve ) };`
 	].join( '\n' ) );
 
 }

@@ -1,10 +1,10 @@
 // A model as three.js draws it: a render target and an MRT node for every pass, and a full-screen material that resolves.
 
 import {
-	AddEquation, AlwaysDepth, BlendMode, CustomBlending, DepthTexture, FloatType, HalfFloatType, MaxEquation, NearestFilter, NoBlending, NodeMaterial,
-	LinearFilter, OneFactor, OneMinusSrcAlphaFactor, OneMinusSrcColorFactor, QuadMesh, RGBAFormat, RGFormat, RedFormat, RenderTarget, UnsignedByteType, Vector4, ZeroFactor
+	AddEquation, AlwaysDepth, BlendMode, CustomBlending, DepthStencilFormat, DepthTexture, FloatType, HalfFloatType, MaxEquation, NearestFilter, NoBlending, NodeMaterial,
+	LinearFilter, OneFactor, OneMinusSrcAlphaFactor, OneMinusSrcColorFactor, QuadMesh, RGBAFormat, RGFormat, RedFormat, RenderTarget, UnsignedByteType, UnsignedIntType, Vector4, ZeroFactor
 } from 'three/webgpu';
-import { Fn, code, diffuseColor, glslFn, ivec2, mat4, mrt, output, positionView, renderGroup, screenCoordinate, screenSize, screenUV, texture, textureLoad, uniform, vec2, vec4, wgslFn } from 'three/tsl';
+import { Fn, cameraProjectionMatrixInverse, code, diffuseColor, glslFn, ivec2, mat4, mrt, output, positionView, renderGroup, screenCoordinate, screenSize, screenUV, texture, textureLoad, uniform, varying, vec2, vec4, wgslFn } from 'three/tsl';
 import { isShaded } from './model.js';
 import { aroundText, libraryText, passText, resolveText, sumText } from './shader-text.js';
 
@@ -34,7 +34,8 @@ const attachmentName = ( target ) => `peelnet_${ target.name }`;
 
 function renderTarget( targets, depthTexture, filter = NearestFilter ) {
 
-	const result = new RenderTarget( 1, 1, { count: targets.length, samples: 0, minFilter: filter, magFilter: filter, generateMipmaps: false, depthBuffer: depthTexture !== null, depthTexture } );
+	const stencilBuffer = depthTexture?.format === DepthStencilFormat;
+	const result = new RenderTarget( 1, 1, { count: targets.length, samples: 0, minFilter: filter, magFilter: filter, generateMipmaps: false, depthBuffer: depthTexture !== null, stencilBuffer, depthTexture } );
 
 	targets.forEach( ( target, i ) => {
 
@@ -58,6 +59,26 @@ function fullScreen( name, properties ) {
 
 }
 
+// Over what lies below, and what keeps the other outputs of a target as they are.
+const OVER = { blendSrc: OneFactor, blendDst: OneMinusSrcAlphaFactor, blendSrcAlpha: OneFactor, blendDstAlpha: OneMinusSrcAlphaFactor };
+const KEEP = { blendSrc: ZeroFactor, blendDst: OneFactor, blendSrcAlpha: ZeroFactor, blendDstAlpha: OneFactor };
+
+// Draws the resolved image over a target with these outputs, or with one.
+function over( resolved, outputs ) {
+
+	const blending = { blending: CustomBlending, transparent: true, ...OVER };
+
+	if ( outputs === null ) return { quad: fullScreen( 'resolve', { fragmentNode: resolved, ...blending } ) };
+
+	const names = Object.keys( outputs.outputNodes );
+	const node = mrt( Object.fromEntries( names.map( ( name ) => [ name, name === 'output' ? resolved : vec4( 0 ) ] ) ) );
+
+	for ( const name of names ) node.setBlendMode( name, Object.assign( new BlendMode( CustomBlending ), name === 'output' ? OVER : KEEP ) );
+
+	return { quad: fullScreen( 'resolve', { outputNode: resolved, ...blending } ), node };
+
+}
+
 // What the material wrote, with the colour that it had before it was multiplied by its opacity.
 const straightColor = /*@__PURE__*/ Fn( ( builder ) => {
 
@@ -67,6 +88,17 @@ const straightColor = /*@__PURE__*/ Fn( ( builder ) => {
 	if ( builder.material.premultipliedAlpha !== true ) return output;
 
 	return vec4( output.rgb.div( output.a.max( 1e-6 ) ), output.a );
+
+} );
+
+// Distance along the view axis: of where a material's own vertex node puts the vertex, if it has one.
+const distance = /*@__PURE__*/ Fn( ( { material } ) => {
+
+	if ( material.vertexNode?.isNode !== true ) return positionView.z.negate();
+
+	const view = cameraProjectionMatrixInverse.mul( varying( vec4( material.vertexNode ) ) );
+
+	return view.z.div( view.w ).negate();
 
 } );
 
@@ -92,7 +124,7 @@ function sumAround( read, add ) {
 /** The passes of one model, ready to draw. `span` is the uniform of the frame's range of depth. */
 export class Stages {
 
-	constructor( model, passes, { isGlsl, depthTexture, below, span, fromLast } ) {
+	constructor( model, passes, { isGlsl, depthTexture, span, outputs, fromLast } ) {
 
 		const { around, resolve_reads } = model.description;
 		const library = code( libraryText( model, isGlsl ), [], isGlsl ? 'glsl' : 'wgsl' );
@@ -105,7 +137,8 @@ export class Stages {
 		const written = new Map();
 		const small = new Map();
 		const kept = new Map();
-		const smallDepth = new DepthTexture( 1, 1, depthTexture.type );
+		// Without a stencil.
+		const smallDepth = new DepthTexture( 1, 1, depthTexture.format === DepthStencilFormat ? UnsignedIntType : depthTexture.type );
 
 		const texels = ( names ) => names.filter( ( name ) => written.has( name ) ).map( ( name ) => written.get( name ) );
 
@@ -121,7 +154,7 @@ export class Stages {
 				const name = attachmentName( description );
 				const [ r, g, b, a ] = description.clear;
 
-				if ( i % 4 === 0 ) columns = native( passText( model, pass, i, written, isGlsl ) )( straightColor(), positionView.z.negate(), span, pixel, ...texels( pass.reads ) ).toVar();
+				if ( i % 4 === 0 ) columns = native( passText( model, pass, i, written, isGlsl ) )( straightColor(), distance(), span, pixel, ...texels( pass.reads ) ).toVar();
 
 				node.outputNodes[ name ] = columns.element( i % 4 );
 				node.setBlendMode( name, blendMode( description ) ).setClearColor( name, 0, a );
@@ -188,7 +221,7 @@ export class Stages {
 
 		}
 
-		this.quad = fullScreen( 'resolve', { fragmentNode: native( resolveText( model, written, isGlsl ) )( textureLoad( below, texel ), pixel, ...texels( resolve_reads ) ) } );
+		this.over = over( native( resolveText( model, written, isGlsl ) )( pixel, ...texels( resolve_reads ) ), outputs );
 		this._viewport = viewport.value;
 
 	}
@@ -247,7 +280,7 @@ export class Stages {
 
 		}
 
-		for ( const made of [ this.quad.material, this.next?.target, this.next?.quad.material ] ) made?.dispose();
+		for ( const made of [ this.over.quad.material, this.next?.target, this.next?.quad.material ] ) made?.dispose();
 
 	}
 

@@ -11,7 +11,7 @@ export const PACKAGE = dirname( dirname( fileURLToPath( import.meta.url ) ) );
 const USUAL = [ '/usr/bin/chromium', '/usr/bin/chromium-browser', '/usr/bin/google-chrome', '/Applications/Google Chrome.app/Contents/MacOS/Google Chrome', 'C:\\Program Files\\Google\\Chrome\\Application\\chrome.exe' ];
 
 // Software drawing, the same on machines with and without a graphics card. Without these WebGPU has no adapter when headless.
-const FLAGS = [ '--enable-unsafe-webgpu', '--use-webgpu-adapter=swiftshader', '--enable-features=Vulkan', '--use-vulkan=swiftshader', '--use-angle=swiftshader', '--disable-vulkan-surface', '--enable-unsafe-swiftshader', '--no-sandbox' ];
+const FLAGS = [ '--enable-unsafe-webgpu', '--use-webgpu-adapter=swiftshader', '--enable-features=Vulkan', '--use-vulkan=swiftshader', '--use-angle=swiftshader', '--disable-vulkan-surface', '--enable-unsafe-swiftshader', '--js-flags=--expose-gc', '--no-sandbox' ];
 
 const TYPES = { '.html': 'text/html', '.js': 'text/javascript', '.json': 'application/json', '.glb': 'model/gltf-binary' };
 

@@ -1,7 +1,7 @@
 // The package in headless Chromium, on both back ends, against images peeled in the page.
 
 import assert from 'node:assert/strict';
-import { mkdirSync, readFileSync, writeFileSync } from 'node:fs';
+import { copyFileSync, mkdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, describe, test } from 'node:test';
 import { PACKAGE, open } from './browser.mjs';
@@ -191,7 +191,7 @@ for ( const backend of [ 'webgpu', 'webgl2' ] ) {
 
 		} );
 
-		test( 'materials and renderer keep their settings; additive ones are drawn as before', async () => {
+		test( 'materials and renderer keep their settings; additive ones are drawn over the others', async () => {
 
 			const result = await run( 'settings', backend );
 
@@ -248,7 +248,7 @@ for ( const backend of [ 'webgpu', 'webgl2' ] ) {
 			const result = await run( 'bad', backend );
 			const expected = {
 				none: /no peelnet export/, 'no model': /no peelnet export/, version: /format version 2.*reads version 1/, recipe: /reads "front"/, format: /unknown format, blend or clear/,
-				blend: /unknown format, blend or clear/, name: /unknown format, blend or clear/, text: /no WGSL text/, range: /neither "pixel" nor "frame" nor "last"/, multisampling: /Multisampling is not supported/, depth: /needs a depth buffer/,
+				blend: /unknown format, blend or clear/, name: /unknown format, blend or clear/, text: /no WGSL text/, halves: /without --precision f16/, range: /neither "pixel" nor "frame" nor "last"/, multisampling: /Multisampling is not supported/, depth: /needs a depth buffer/,
 				...( backend === 'webgpu' ? { compatibility: /compatibility mode/, bytes: /30 bytes a sample.*has 16/ } : { glsl: /no GLSL text/ } )
 			};
 
@@ -278,12 +278,12 @@ for ( const backend of [ 'webgpu', 'webgl2' ] ) {
 
 		} );
 
-		test( 'multisampling of the renderer is refused, and can be left out', async () => {
+		test( 'a renderer with multisampling draws it, and a pass that asks for samples says why not', async () => {
 
 			const result = await run( 'multisampled', backend );
 
 			assert.equal( result.problems.length, 1 );
-			assert.match( result.problems[ 0 ], /Multisampling is not supported.*samples: 0/ );
+			assert.match( result.problems[ 0 ], /Multisampling is not supported.*Leave out/ );
 			assert.equal( result.samples, 4 );
 			assert.deepEqual( result.off, [] );
 
@@ -299,6 +299,119 @@ for ( const backend of [ 'webgpu', 'webgl2' ] ) {
 			assert.equal( result.calls[ 2 ], result.calls[ 1 ] + 6, 'the small pass, its depth and its sums, two passes and a resolve' );
 			assert.ok( result.something.largest <= STEP );
 			assert.equal( result.problem, null );
+
+		} );
+
+		test( 'labels that ignore depth and light that adds are drawn over the glass', async () => {
+
+			const { problems, label, added, without } = await run( 'overAll', backend );
+
+			assert.deepEqual( problems, [] );
+			assert.ok( Math.max( label, added, without ) <= STEP, `${ label } ${ added } ${ without }` );
+
+		} );
+
+		test( 'objects are left out by their data, their material\'s and the option; so are own fragments and depths', async () => {
+
+			const { depthNode, ...left } = await run( 'leftOut', backend );
+
+			assert.equal( depthNode, false );
+
+			for ( const [ how, error ] of Object.entries( left ) ) assert.ok( error <= STEP, `${ how }: ${ error }` );
+
+		} );
+
+		test( 'depths follow a material\'s own vertex node', async () => {
+
+			for ( const [ camera, error ] of Object.entries( await run( 'vertexNodes', backend ) ) ) assert.ok( error <= STEP, `${ camera }: ${ error }` );
+
+		} );
+
+		test( 'bundles are drawn object by object', async () => {
+
+			const { first, later, kept } = await run( 'bundled', backend );
+
+			assert.ok( Math.max( first, later ) <= STEP, `${ first } ${ later }` );
+			assert.equal( kept, true );
+
+		} );
+
+		test( 'a disposed pass can be drawn again, and shows its last frame', async () => {
+
+			const { problems, reused, previous } = await run( 'again', backend );
+
+			assert.deepEqual( problems, [] );
+			assert.ok( Math.max( reused, previous ) <= STEP, `${ reused } ${ previous }` );
+
+		} );
+
+		test( 'the stencil of opaque objects masks glass', async () => {
+
+			const { problems, inside, outside } = await run( 'stencilled', backend );
+
+			assert.deepEqual( problems, [] );
+			assert.ok( Math.max( inside, outside ) <= STEP, `${ inside } ${ outside }` );
+
+		} );
+
+		test( 'further outputs keep what opaque objects wrote', async () => {
+
+			const result = await run( 'outputs', backend );
+
+			assert.deepEqual( result.problems, [] );
+			assert.ok( Math.max( result.output, result.mark ) <= STEP, `${ result.output } ${ result.mark }` );
+
+		} );
+
+		test( 'one material for all, of the scene or of the pass', async () => {
+
+			const { scene, pass, kept } = await run( 'overridden', backend );
+
+			assert.ok( Math.max( scene, pass ) <= STEP, `${ scene } ${ pass }` );
+			assert.equal( kept, true );
+
+		} );
+
+		test( 'disposed passes are collected', async () => {
+
+			const { three, peelnet } = await run( 'collected', backend );
+
+			// three.js holds what it drew last.
+			assert.ok( peelnet <= Math.max( three, 1 ), `${ peelnet } of 6, and ${ three } of three.js's own` );
+
+		} );
+
+		test( 'after compileAsync the first frame compiles nothing', async () => {
+
+			const { createShaderModule = 0, createRenderPipeline = 0, createShader = 0, createProgram = 0 } = await run( 'compiled', backend );
+
+			// The quad that shows the pass, of the test's own pipeline.
+			assert.ok( createRenderPipeline + createProgram <= 1, String( createRenderPipeline + createProgram ) );
+			assert.ok( createShaderModule + createShader <= 2, String( createShaderModule + createShader ) );
+
+		} );
+
+		test( 'an XR session is drawn sorted, which is said once, and what follows it as before', async () => {
+
+			const { problems, after, problem } = await run( 'session', backend );
+
+			assert.equal( problems.length, 1 );
+			assert.match( problems[ 0 ], /XR is not supported/ );
+			assert.ok( after <= STEP, String( after ) );
+			assert.equal( problem, null );
+
+		} );
+
+		test( 'a model is loaded by its address', async () => {
+
+			for ( const ending of [ 'json', 'wgsl', 'es.glsl' ] ) copyFileSync( join( PACKAGE, '../../models/medium', `model.${ ending }` ), join( PACKAGE, 'test/page', `model.${ ending }` ) );
+
+			const { error, missing } = await run( 'loaded', backend );
+
+			for ( const ending of [ 'json', 'wgsl', 'es.glsl' ] ) rmSync( join( PACKAGE, 'test/page', `model.${ ending }` ) );
+
+			assert.ok( error <= STEP, String( error ) );
+			assert.match( missing, /none\.(json|wgsl): 404/ );
 
 		} );
 

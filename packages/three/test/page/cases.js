@@ -296,7 +296,7 @@ export async function viewport( backend, { model: name } ) {
 
 }
 
-/** An additive material is drawn below, sorted, and the materials' own settings come back. */
+/** An additive material is drawn after the others, and the materials' own settings come back. */
 export async function settings( backend ) {
 
 	const renderer = await makeRenderer( backend );
@@ -312,9 +312,9 @@ export async function settings( backend ) {
 	const { image, node } = await drawn( renderer, scene, camera, { model: await modelOf( 'medium' ) } );
 	const after = state();
 
-	// The far card adds: it is drawn into what lies below, and the near one over it.
-	materials[ 1 ].blending = THREE.AdditiveBlending;
-	materials[ 1 ].needsUpdate = true;
+	// The near card adds: it is drawn over the far one, as sorting does.
+	materials[ 0 ].blending = THREE.AdditiveBlending;
+	materials[ 0 ].needsUpdate = true;
 
 	const added = await imageOf( renderer, node );
 	const sorted = await imageOf( renderer, pass( scene, camera ) );
@@ -402,7 +402,7 @@ export async function depthRanges( backend ) {
 }
 
 // The device's own objects, counted as they are made.
-function counted( renderer ) {
+export function counted( renderer ) {
 
 	const counts = {};
 	const { backend } = renderer;

@@ -35,6 +35,7 @@ export async function bad( backend ) {
 		blend: { model: described( ( d ) => ( d.passes[ 1 ].targets[ 0 ].color = 'min' ) ) },
 		name: { model: described( ( d ) => ( d.passes[ 1 ].targets[ 0 ].name = 'x; }' ) ) },
 		text: { model: { ...good, wgsl: '' } },
+		halves: { model: { ...good, wgsl: `enable f16;\n${ good.wgsl }` } },
 		glsl: { model: { ...good, glsl: null } },
 		range: { model: good, range: 'tile' },
 		multisampling: { model: good, samples: 4 },
@@ -96,12 +97,12 @@ export async function parts( backend ) {
 
 }
 
-/** A renderer with multisampling, whose pass takes it over. */
+/** A renderer with multisampling, and a pass that asks for it. */
 export async function multisampled( backend ) {
 
 	const renderer = await makeRenderer( backend, { antialias: true } );
-	const { problems, node } = await drawn( renderer, scenes.twoCards(), scenes.perspective( aspect ), { model: await modelOf( 'medium' ) } );
-	const off = await drawn( renderer, scenes.twoCards(), scenes.perspective( aspect ), { model: await modelOf( 'medium' ), samples: 0 } );
+	const off = await drawn( renderer, scenes.twoCards(), scenes.perspective( aspect ), { model: await modelOf( 'medium' ) } );
+	const { problems, node } = await drawn( renderer, scenes.twoCards(), scenes.perspective( aspect ), { model: await modelOf( 'medium' ), samples: 4 } );
 
 	return { problems, samples: node.renderTarget.samples, off: off.problems };
 
