@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 const GRACE: Duration = Duration::from_millis(600);
 
 /// What the message of an end may take: whoever reads stderr can have stopped reading.
-const MESSAGE_TIME: Duration = Duration::from_millis(100);
+const MESSAGE_TIME: Duration = Duration::from_millis(300);
 
 static STOP: AtomicBool = AtomicBool::new(false);
 
