@@ -9,7 +9,7 @@ use peelnet::{
     Recipe, SCHEDULES, SPLITS,
     fit::{ModelPlace, Step, fit},
     named,
-    train::{Config, DEFAULT_BUFFER_ROWS, EpochReport, RunOptions},
+    train::{Config, DEFAULT_BUFFER_ROWS, EpochReport, PixelLoss, RunOptions},
 };
 use peelnet_core::files::Outputs;
 use pyo3::prelude::*;
@@ -158,8 +158,8 @@ pub fn train<'py>(
         split: named("split", SPLITS, split).map_err(wrong)?,
         ..defaults
     };
-    let loss = loss.map(str::parse).transpose().map_err(wrong::<String>)?;
-    let config = config.minimising(loss);
+    let loss = loss.map(str::parse::<PixelLoss>).transpose();
+    let config = config.minimising(loss.map_err(|e: String| wrong(e))?);
     config.check().map_err(raised)?;
     let loss_curve = loss_curve.unwrap_or_default();
     let mut outputs = Outputs::new(("force=True", force), NO_INPUTS);

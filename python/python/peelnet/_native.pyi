@@ -284,7 +284,7 @@ def train(
     schedule: str | None = None,
     hidden: Sequence[int] | None = None,
     patience: int | None = None,
-    loss: str = "image",
+    loss: str | None = None,
     seed: int = 1,
     max_rows: int | None = None,
     stream: bool = False,
