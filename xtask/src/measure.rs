@@ -100,11 +100,14 @@ pub fn measure(machine: &str, names: &[&str]) -> Outcome {
     let io = |path: &Path, e: std::io::Error| format!("{}: {e}", path.display());
     let mut times = String::new();
     let all = Instant::now();
-    for [name, line, keep] in steps.into_iter().filter(is_asked) {
+    // What is missing is said before hours of others.
+    let asked = steps.into_iter().filter(is_asked);
+    let asked = asked.map(|[name, line, keep]| Ok((name, filled(line)?, keep)));
+    for (name, line, keep) in asked.collect::<Result<Vec<_>, String>>()? {
         let begin = Instant::now();
         let out = root().join("out/measure").join(name);
         let _ = fs::remove_dir_all(&out);
-        let line = format!("{} --out out/measure/{name} --quiet", filled(line)?);
+        let line = format!("{line} --out out/measure/{name} --quiet");
         let kept = into.join(if keep.is_empty() { "" } else { name });
         fs::create_dir_all(&kept).map_err(|e| io(&kept, e))?;
         if keep.is_empty() {

@@ -127,7 +127,7 @@ const PIXELS: Budget = Budget {
     validation: 0.1,
 };
 
-/// Of the competitors: half and twice the rate, and twice as many epochs, gain nothing (docs/learned-weights.md).
+/// Of the competitors: neither half nor twice the rate gains anything (docs/learned-weights.md).
 const COMPETITORS: Budget = Budget {
     epochs: 80,
     learning_rate: 3.2e-2,

@@ -94,7 +94,7 @@ async function start() {
 
 	};
 
-	const choice = () => ( { model: MODELS[ element( 'model' ).value ], range: element( 'range' ).value, samples: 0, onProblem: message } );
+	const choice = () => ( { model: MODELS[ element( 'model' ).value ], range: element( 'range' ).value, onProblem: message } );
 	const panels = [ 'three.js, sorted', 'three.js, weighted OIT', 'peelnet' ].map( ( title, i ) => {
 
 		const canvas = renderers[ i ].domElement;

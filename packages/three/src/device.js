@@ -114,11 +114,9 @@ export function leaveOutBundles( { backend } ) {
 
 	if ( beginBundle === undefined ) return () => {};
 
-	const isOwn = Object.hasOwn( backend, 'beginBundle' );
-
 	backend.beginBundle = undefined;
 
-	return () => isOwn ? ( backend.beginBundle = beginBundle ) : delete backend.beginBundle;
+	return () => ( backend.beginBundle = beginBundle );
 
 }
 

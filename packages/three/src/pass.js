@@ -266,13 +266,15 @@ export class PeelnetPassNode extends PassNode {
 
 		const material = rest[ 3 ];
 
-		if ( this._stages !== null && this._isKept( object, material ) ) {
+		if ( this._stages === null ) return this._renderer.renderObject( object, ...rest );
+
+		if ( this._isKept( object, material ) ) {
 
 			this._kept ++;
 
 			if ( this.depthRange === null ) this._depths.add( object, this._viewFromWorld );
 
-		} else if ( this._stages !== null && this._isOver( object, material ) ) {
+		} else if ( this._isOver( object, material ) ) {
 
 			this._over ++;
 
@@ -281,7 +283,7 @@ export class PeelnetPassNode extends PassNode {
 			const { depthWrite } = material;
 
 			// Glass behind it is not hidden by what can be seen through.
-			if ( this._stages !== null && material.transparent === true ) material.depthWrite = false;
+			if ( material.transparent === true ) material.depthWrite = false;
 
 			this._renderer.renderObject( object, ...rest );
 			material.depthWrite = depthWrite;
