@@ -1,16 +1,18 @@
 // The range of depth of the transparent objects in view. The tighter it is, the better the levels of depth that a model keeps.
 
 import { Box3, Matrix4, Vector3 } from 'three/webgpu';
+import { instancesOfBatch } from './private.js';
 
 const _empty = /*@__PURE__*/ new Box3();
-const _instance = /*@__PURE__*/ new Box3();
 const _matrix = /*@__PURE__*/ new Matrix4();
+const _instance = /*@__PURE__*/ new Matrix4();
 const _center = /*@__PURE__*/ new Vector3();
 const _half = /*@__PURE__*/ new Vector3();
 
-// Boxes by geometry, of the version of the positions that they were made from.
+const IDENTITY = /*@__PURE__*/ new Matrix4().elements;
+
+// Boxes by geometry, of the version of the positions that they were made from, and by bone.
 const geometryBoxes = /*@__PURE__*/ new WeakMap();
-const instanceBoxes = /*@__PURE__*/ new WeakMap();
 const boneBoxes = /*@__PURE__*/ new WeakMap();
 
 /** Where a distance along the view axis lies in what `write` wrote, -1 at near to 1 at far. */
@@ -19,6 +21,16 @@ export function warped( distance, { x, y, z, w } ) {
 	const fromNear = y === 0 ? distance - x - z : Math.log( Math.max( distance * y, 1 ) );
 
 	return Math.min( Math.max( fromNear * w - 1, - 1 ), 1 );
+
+}
+
+// Makes a box the one whose instances are added; false where it holds nothing.
+function taken( box ) {
+
+	box.getCenter( _center );
+	box.getSize( _half ).multiplyScalar( 0.5 );
+
+	return box.isEmpty() === false;
 
 }
 
@@ -45,29 +57,37 @@ export class DepthRange {
 
 		if ( object.isSkinnedMesh === true && object.skeleton !== undefined ) return this._addSkinned( object, viewFromWorld );
 
-		this._addBox( localBox( object ), _matrix.multiplyMatrices( viewFromWorld, object.matrixWorld ) );
+		_matrix.multiplyMatrices( viewFromWorld, object.matrixWorld );
+
+		if ( object.isInstancedMesh === true ) return this._addInstances( object, _matrix.elements );
+
+		if ( object.isBatchedMesh === true ) return this._addBatch( object, _matrix.elements );
+
+		this._addBox( geometryBox( object.geometry ), _matrix );
 
 	}
 
 	/**
-	 * Writes what shaders need of the range, clipped to the camera's: what to subtract from z, then the fields of the texts'
+	 * Writes what shaders need of the range, clipped to that of the cameras, which are of one kind: what to subtract from z, then the fields of the texts'
 	 * PeelnetRange, as their function peelnet_range computes them. An orthographic camera's z starts at 0 in it, which makes the
 	 * scale of depth linear.
 	 */
-	write( camera, target ) {
+	write( cameras, target ) {
 
-		let near = Math.max( this.near, camera.near );
-		let far = Math.min( this.far, camera.far );
+		const nearest = Math.min( ...cameras.map( ( camera ) => camera.near ) );
+		const farthest = Math.max( ...cameras.map( ( camera ) => camera.far ) );
+		let near = Math.max( this.near, nearest );
+		let far = Math.min( this.far, farthest );
 
 		// Boxes that do not bound what a shader moves may lie outside of the camera's range.
 		if ( ! ( near <= far ) ) {
 
-			near = camera.near;
-			far = camera.far;
+			near = nearest;
+			far = farthest;
 
 		}
 
-		if ( camera.isPerspectiveCamera === true && near > 0 ) {
+		if ( cameras[ 0 ].isPerspectiveCamera === true && near > 0 ) {
 
 			const extent = Math.log( far / near );
 
@@ -82,16 +102,44 @@ export class DepthRange {
 
 	_addBox( box, viewFromLocal ) {
 
-		if ( box.isEmpty() ) return;
+		if ( taken( box ) ) this._addInstance( IDENTITY, 0, viewFromLocal.elements );
 
-		box.getCenter( _center );
-		box.getSize( _half ).multiplyScalar( 0.5 );
+	}
 
-		const m = viewFromLocal.elements;
-		const z = - ( m[ 2 ] * _center.x + m[ 6 ] * _center.y + m[ 10 ] * _center.z + m[ 14 ] );
-		const extent = Math.abs( m[ 2 ] ) * _half.x + Math.abs( m[ 6 ] ) * _half.y + Math.abs( m[ 10 ] ) * _half.z;
+	// Tens of thousands may move in every frame: z alone is computed of each, and no box is made.
+	_addInstances( { instanceMatrix: { array }, count, geometry }, m ) {
 
-		this._addInterval( z - extent, z + extent );
+		if ( taken( geometryBox( geometry ) ) === false ) return;
+
+		for ( let i = 0; i < count; i ++ ) this._addInstance( array, 16 * i, m );
+
+	}
+
+	_addBatch( mesh, m ) {
+
+		const boxes = new Map();
+
+		for ( const [ i, geometry ] of instancesOfBatch( mesh ) ) {
+
+			if ( boxes.has( geometry ) === false ) boxes.set( geometry, mesh.getBoundingBoxAt( geometry, new Box3() ) );
+
+			if ( taken( boxes.get( geometry ) ) ) this._addInstance( mesh.getMatrixAt( i, _instance ).elements, 0, m );
+
+		}
+
+	}
+
+	// The box that was taken, moved by the matrix at a place of an array and then by `m`.
+	_addInstance( array, at, m ) {
+
+		const x = m[ 2 ] * array[ at ] + m[ 6 ] * array[ at + 1 ] + m[ 10 ] * array[ at + 2 ];
+		const y = m[ 2 ] * array[ at + 4 ] + m[ 6 ] * array[ at + 5 ] + m[ 10 ] * array[ at + 6 ];
+		const z = m[ 2 ] * array[ at + 8 ] + m[ 6 ] * array[ at + 9 ] + m[ 10 ] * array[ at + 10 ];
+		const w = m[ 2 ] * array[ at + 12 ] + m[ 6 ] * array[ at + 13 ] + m[ 10 ] * array[ at + 14 ] + m[ 14 ];
+		const middle = - ( x * _center.x + y * _center.y + z * _center.z + w );
+		const extent = Math.abs( x ) * _half.x + Math.abs( y ) * _half.y + Math.abs( z ) * _half.z;
+
+		this._addInterval( middle - extent, middle + extent );
 
 	}
 
@@ -159,48 +207,6 @@ function geometryBox( geometry ) {
 	}
 
 	return geometry.boundingBox;
-
-}
-
-function localBox( object ) {
-
-	if ( object.isInstancedMesh === true ) return instancedBox( object );
-
-	if ( object.isBatchedMesh === true ) {
-
-		object.computeBoundingBox();
-
-		return object.boundingBox;
-
-	}
-
-	return geometryBox( object.geometry );
-
-}
-
-function instancedBox( mesh ) {
-
-	const version = mesh.instanceMatrix.version;
-	let entry = instanceBoxes.get( mesh );
-
-	if ( entry === undefined || entry.version !== version || entry.count !== mesh.count ) {
-
-		entry = { version, count: mesh.count, box: new Box3() };
-
-		const box = geometryBox( mesh.geometry );
-
-		for ( let i = 0; i < mesh.count; i ++ ) {
-
-			mesh.getMatrixAt( i, _matrix );
-			entry.box.union( _instance.copy( box ).applyMatrix4( _matrix ) );
-
-		}
-
-		instanceBoxes.set( mesh, entry );
-
-	}
-
-	return entry.box;
 
 }
 

@@ -32,26 +32,6 @@ export function drawnPasses( { backend }, model, range ) {
 }
 
 /**
- * Lets WebGL 2 without OES_draw_buffers_indexed blend as the targets of a pass do, which then are all alike.
- *
- * @returns {() => void} ends it
- */
-export function blendAlike( { backend } ) {
-
-	const { gl, drawBuffersIndexedExt } = backend;
-
-	if ( backend.isWebGPUBackend === true || drawBuffersIndexedExt ) return () => {};
-
-	backend.drawBuffersIndexedExt = {
-		blendEquationSeparateiOES: ( index, ...equations ) => gl.blendEquationSeparate( ...equations ),
-		blendFuncSeparateiOES: ( index, ...factors ) => gl.blendFuncSeparate( ...factors )
-	};
-
-	return () => ( backend.drawBuffersIndexedExt = drawBuffersIndexedExt );
-
-}
-
-/**
  * What a device lacks for a model, as one sentence, or null where nothing is.
  *
  * @param {import('three/webgpu').Renderer} renderer
@@ -100,23 +80,6 @@ function webglProblem( { backend }, model, targets, count, lacks ) {
 	const most = gl.getParameter( gl.MAX_DRAW_BUFFERS );
 
 	return most < count ? lacks( `it needs ${ count } colour targets and has ${ most }` ) : null;
-
-}
-
-/**
- * Lets a renderer draw the objects of bundles one by one. The field is a method of three.js's WebGPU back end: where there is none, there are no bundles.
- *
- * @returns {() => void} ends it
- */
-export function leaveOutBundles( { backend } ) {
-
-	const { beginBundle } = backend;
-
-	if ( beginBundle === undefined ) return () => {};
-
-	backend.beginBundle = undefined;
-
-	return () => ( backend.beginBundle = beginBundle );
 
 }
 

@@ -1,4 +1,4 @@
-import type { Camera, Material, Object3D, PassNode, PassNodeOptions, Scene } from 'three/webgpu';
+import type { Camera, Material, Object3D, PassNode, PassNodeOptions, Scene, TextureNode } from 'three/webgpu';
 
 /** How a target blends: `dst + src`, `max(dst, src)` or `dst * (1 - src)`. */
 export type PeelnetBlend = 'add' | 'max' | 'transmit';
@@ -78,7 +78,15 @@ export interface PeelnetPassOptions extends PassNodeOptions {
 	filter?: ( object: Object3D, material: Material ) => boolean;
 	/** Called once for each problem; the scene is then drawn sorted. The default writes to the console. */
 	onProblem?: ( message: string ) => void;
-	/** Samples a pixel. Only 0, the default, and 1 are supported. */
+	/**
+	 * Coverage, 0 to 1, from which on the nearest transparent surface of a pixel writes its depth, for depth of field and the like, and all outputs of
+	 * `setMRT` but the image, such as normals and velocities. Null, the default, leaves them to opaque objects.
+	 */
+	depthThreshold?: number | null;
+	/**
+	 * How many drawings of the scene a frame is the mean of, each at another place in the pixel: what multisampling shows, with statistics and weights by
+	 * sample. An even number up to 16; 0, the default, is one drawing.
+	 */
 	samples?: number;
 }
 
@@ -93,8 +101,12 @@ export class PeelnetPassNode extends PassNode {
 	/** May be set at any time. */
 	range: 'pixel' | 'frame' | 'last';
 	depthRange: readonly [ number, number ] | null;
+	depthThreshold: number | null;
+	samples: number;
 	filter: ( object: Object3D, material: Material ) => boolean;
 	onProblem: ( message: string ) => void;
+	/** How much of each pixel is covered, 0 to 1, by what the learned weights draw: a mask for denoisers and temporal antialiasing. */
+	getCoverageNode(): TextureNode;
 	/** What keeps the model from being drawn, or null. */
 	readonly problem: string | null;
 

@@ -1,16 +1,19 @@
 // The pass that replaces three.js's sorted drawing of transparent objects by a learned, order-independent one.
 
-import { AdditiveBlending, Matrix4, NormalBlending, PassNode, RendererUtils, Vector2, Vector3, Vector4 } from 'three/webgpu';
-import { renderGroup, uniform } from 'three/tsl';
+import { AdditiveBlending, Color, HalfFloatType, Matrix4, NormalBlending, PassNode, RedFormat, RenderTarget, RendererUtils, Vector2, Vector3, Vector4 } from 'three/webgpu';
+import { passTexture, renderGroup, uniform } from 'three/tsl';
 import { DepthRange, warped } from './depth-range.js';
-import { blendAlike, deviceProblem, drawnPasses, leaveOutBundles, watchDevice } from './device.js';
+import { deviceProblem, drawnPasses, watchDevice } from './device.js';
+import { drawQuad } from './full-screen.js';
 import { modelProblem } from './model.js';
-import { releasePasses } from './release.js';
+import { blendAlike, contextOf, drawAgain, leaveOutBundles, releasePasses } from './private.js';
+import { Samples, isCount } from './samples.js';
 import { Stages } from './stages.js';
 
 const _size = /*@__PURE__*/ new Vector2();
 const _place = /*@__PURE__*/ new Vector3();
 const _view = /*@__PURE__*/ new Vector3();
+const _color = /*@__PURE__*/ new Color();
 
 // What may move from frame to frame where the next one is made from the last: places, of a frame of 2, and depths, of a range of 2.
 const MOVED = 0.0625;
@@ -40,21 +43,8 @@ export function isOrderIndependent( material ) {
 /** The default of the option `filter`: whether neither an object's nor its material's `userData.peelnet` is false. */
 export const isWanted = ( object, material ) => object.userData.peelnet !== false && material.userData.peelnet !== false;
 
-// Draws a full-screen quad between passes, whose settings it leaves.
-function drawQuad( renderer, { target, quad, node = null } ) {
-
-	const { opaque } = renderer;
-	const draw = renderer.getRenderObjectFunction();
-
-	renderer.setRenderObjectFunction( null );
-	renderer.setMRT( node );
-	renderer.setRenderTarget( target );
-	renderer.opaque = true;
-	quad.render( renderer );
-	renderer.opaque = opaque;
-	renderer.setRenderObjectFunction( draw );
-
-}
+// The cameras that a frame is drawn with: the eyes of XR, or of an array.
+const eyesOf = ( camera ) => camera.isArrayCamera === true && camera.cameras.length > 0 ? camera.cameras : [ camera ];
 
 /** A PassNode that draws a scene's transparent objects in any order. */
 export class PeelnetPassNode extends PassNode {
@@ -65,15 +55,23 @@ export class PeelnetPassNode extends PassNode {
 
 	}
 
-	constructor( scene, camera, { model, range = 'pixel', depthRange = null, filter = isWanted, onProblem = report, ...options } = {} ) {
+	constructor( scene, camera, { model, range = 'pixel', depthRange = null, depthThreshold = null, samples = 0, filter = isWanted, onProblem = report, ...options } = {} ) {
 
-		// A renderer with multisampling draws it, too: statistics of a pixel have no samples.
-		super( PassNode.COLOR, scene, camera, { samples: 0, ...options } );
+		// Statistics must not be averaged over the samples of a pixel: each is drawn by itself.
+		super( PassNode.COLOR, scene, camera, { ...options, samples: 0 } );
 
 		this.isPeelnetPassNode = true;
 
 		/** `[near, far]` of z that replaces the range of the objects' boxes, for what a shader moves out of them. */
 		this.depthRange = depthRange;
+
+		/**
+		 * Coverage from which on the nearest fragment of a pixel writes its depth, and what the other outputs are of it, such as normals; null for none.
+		 */
+		this.depthThreshold = depthThreshold;
+
+		/** How many drawings of the scene a frame is the mean of, at as many places in the pixel: an even number, or 0 for one in the middle. */
+		this.samples = samples;
 
 		/** Whether an object of a material is drawn by the learned weights, where `isOrderIndependent` says that it can be; else it is drawn after them. */
 		this.filter = filter;
@@ -87,16 +85,22 @@ export class PeelnetPassNode extends PassNode {
 		this._model = model;
 		this._range = range;
 		this._span = uniform( new Vector4() ).setGroup( renderGroup );
+		this._threshold = uniform( 0 ).setGroup( renderGroup );
 		this._depths = new DepthRange();
+		this._listed = new Set();
 		this._stages = null;
+		this._samples = null;
+		this._coverage = null;
 		this._stale = true;
+		this._wanted = [];
 		this._cleared = new Vector2( 0, 0 );
 		this._renderer = null;
-		this._viewFromWorld = null;
+		this._viewed = camera;
 		this._unwatch = null;
 
 		this._drawBelow = ( object, ...rest ) => this._drawOrKeep( object, rest );
-		this._drawTransparent = ( object, ...rest ) => this._drawKept( object, rest );
+		this._drawTransparent = ( object, ...rest ) => this._drawKept( object, rest, false );
+		this._drawNearest = ( object, ...rest ) => this._drawKept( object, rest, true );
 		this._drawOver = ( object, ...rest ) => this._isOver( object, rest[ 3 ] ) && this._renderer.renderObject( object, ...rest );
 
 	}
@@ -129,6 +133,15 @@ export class PeelnetPassNode extends PassNode {
 
 	}
 
+	/** How much of each pixel is covered, 0 to 1, by what the learned weights draw: a mask for what comes after. */
+	getCoverageNode() {
+
+		this._useCoverage();
+
+		return passTexture( this, this._coverage.texture );
+
+	}
+
 	/** Compiles what the pass draws, by drawing a frame of it. */
 	async compileAsync( renderer ) {
 
@@ -145,6 +158,7 @@ export class PeelnetPassNode extends PassNode {
 
 		super.setSize( width, height );
 
+		this._coverage?.setSize( this.renderTarget.width, this.renderTarget.height );
 		this._stages?.setSize( this.renderTarget );
 
 	}
@@ -159,16 +173,12 @@ export class PeelnetPassNode extends PassNode {
 		this._prepare( renderer );
 
 		_rendererState = RendererUtils.saveRendererState( renderer, _rendererState );
-
-		// What lies below: opaque objects, and transparent ones that no weight can blend. The others are only noted.
 		this._renderer = renderer;
-		this._depths.reset();
-		this._kept = this._over = 0;
-		this._viewFromWorld = this.camera.matrixWorldInverse;
-		renderer.setRenderObjectFunction( this._drawBelow );
-		super.updateBefore( frame );
 
-		if ( this._kept + this._over > 0 ) this._drawTransparents( renderer );
+		const draw = () => this._drawFrame( frame );
+
+		if ( this._samples === null || this._viewed.isArrayCamera === true ) draw();
+		else this._samples.draw( renderer, this._viewed, this.renderTarget, ( i ) => i === 0 ? draw() : drawAgain( this, draw ) );
 
 		RendererUtils.restoreRendererState( renderer, _rendererState );
 		this._renderer = null;
@@ -176,14 +186,46 @@ export class PeelnetPassNode extends PassNode {
 
 	}
 
+	_drawFrame( frame ) {
+
+		const { renderer } = frame;
+
+		// What lies below: opaque objects, and transparent ones that no weight can blend. The others are only noted.
+		this._depths.reset();
+		this._listed.clear();
+		this._kept = this._over = 0;
+		renderer.setRenderObjectFunction( this._drawBelow );
+		super.updateBefore( frame );
+
+		if ( this._coverage !== null && ( this._stages === null || this._kept === 0 ) ) this._clearCoverage( renderer );
+
+		if ( this._kept + this._over > 0 ) this._drawTransparents( renderer );
+
+	}
+
 	/** Builds the stages of a new model and clears targets of a new size, before anything of the frame is drawn. */
 	_prepare( renderer ) {
 
-		renderer.getDrawingBufferSize( _size );
+		// As PassNode finds them.
+		const output = renderer.getOutputRenderTarget();
+		const isXR = output?.isXRRenderTarget === true;
 
-		// A session may start and end at any time, and outputs may be added.
-		if ( this._isXR !== renderer.xr.isPresenting || this._outputs !== this._mrt ) this._stale = true;
-		if ( this._stale ) this._build( renderer );
+		if ( isXR ) _size.set( output.width, output.height );
+		else renderer.getDrawingBufferSize( _size );
+
+		this._viewed = isXR ? renderer.xr.getCamera() : this.camera;
+
+		if ( this.depthThreshold !== null ) this._useCoverage();
+
+		// What may change at any time: a session may start, outputs be added.
+		const wanted = [ this._viewed.isMultiViewCamera === true, this.getMRT(), this.samples, this.depthThreshold === null, this._coverage ];
+
+		if ( this._stale || wanted.some( ( value, i ) => value !== this._wanted[ i ] ) ) {
+
+			this._wanted = wanted;
+			this._build( renderer );
+
+		}
 
 		this.setSize( _size.width, _size.height );
 
@@ -211,8 +253,6 @@ export class PeelnetPassNode extends PassNode {
 
 		this._release( renderer );
 		this._stale = false;
-		this._isXR = renderer.xr.isPresenting;
-		this._outputs = this._mrt;
 		this._unwatch ??= watchDevice( renderer, ( message ) => this._fail( message ) );
 		this.problem = null;
 
@@ -224,9 +264,12 @@ export class PeelnetPassNode extends PassNode {
 			isGlsl: renderer.backend.isWebGPUBackend !== true,
 			depthTexture: this.renderTarget.depthTexture,
 			span: this._span,
-			outputs: this._outputs,
-			fromLast: this._range === 'last'
+			outputs: this.getMRT(),
+			fromLast: this._range === 'last',
+			coverage: this._coverage,
+			threshold: this.depthThreshold === null ? null : this._threshold
 		} );
+		this._samples = this.samples <= 1 ? null : new Samples( this.samples, renderer.getOutputBufferType(), this.getMRT() );
 		this._seen = null;
 		this._cleared.set( 0, 0 );
 		this._built = renderer;
@@ -243,13 +286,13 @@ export class PeelnetPassNode extends PassNode {
 
 		if ( this._range === 'last' && this._model.description.around?.last === undefined ) return `The recipe "${ this._model.description.recipe }" does not read what the last frame shows: set the range to "pixel" or "frame".`;
 
-		if ( this.renderTarget.samples > 1 ) return `Multisampling is not supported: a model's statistics must not be averaged over the ${ this.renderTarget.samples } samples of a pixel. Leave out { samples }, and smooth edges afterwards, for example with fxaa().`;
+		if ( isCount( this.samples ) === false ) return `The option samples is ${ Number( this.samples ) }, and must be 0, 1 or an even number up to 16.`;
 
 		if ( this.renderTarget.depthTexture === null ) return 'The pass needs a depth buffer: leave out { depthBuffer: false }.';
 
-		if ( this._outputs !== null && renderer.backend.isWebGPUBackend !== true && ! renderer.backend.drawBuffersIndexedExt ) return 'This device cannot blend over one of several outputs: WebGL 2 needs the extension OES_draw_buffers_indexed.';
+		if ( this.getMRT() !== null && renderer.backend.isWebGPUBackend !== true && ! renderer.backend.drawBuffersIndexedExt ) return 'This device cannot blend over one of several outputs: WebGL 2 needs the extension OES_draw_buffers_indexed.';
 
-		if ( renderer.xr.isPresenting === true ) return 'XR is not supported: what is transparent is drawn sorted while a session lasts.';
+		if ( this._viewed.isMultiViewCamera === true ) return 'Both eyes at once are not supported: leave out { multiview: true } of the renderer, and each eye is drawn by itself. Until then, what is transparent is drawn sorted.';
 
 		return deviceProblem( renderer, this._model, this._range );
 
@@ -272,7 +315,7 @@ export class PeelnetPassNode extends PassNode {
 
 			this._kept ++;
 
-			if ( this.depthRange === null ) this._depths.add( object, this._viewFromWorld );
+			if ( this.depthRange === null ) for ( const eye of eyesOf( this._viewed ) ) this._depths.add( object, eye.matrixWorldInverse );
 
 		} else if ( this._isOver( object, material ) ) {
 
@@ -304,7 +347,7 @@ export class PeelnetPassNode extends PassNode {
 
 	}
 
-	_drawKept( object, rest ) {
+	_drawKept( object, rest, isWriting ) {
 
 		const material = rest[ 3 ];
 
@@ -312,11 +355,24 @@ export class PeelnetPassNode extends PassNode {
 
 		const { depthWrite, forceSinglePass } = material;
 
-		// No fragment hides another, and the sides of a surface need no order: one draw is enough for both.
-		material.depthWrite = false;
+		// Only the nearest surface hides others, and the sides of a surface need no order: one draw is enough for both.
+		material.depthWrite = isWriting;
 		material.forceSinglePass = true;
 
+		// A batch lists its instances once for all passes, in no order, in which equal ones are drawn at once.
+		const { sortObjects, perObjectFrustumCulled } = object;
+
+		if ( object.isBatchedMesh === true ) {
+
+			object.sortObjects = false;
+			object.perObjectFrustumCulled = perObjectFrustumCulled && this._listed.has( object ) === false;
+			this._listed.add( object );
+
+		}
+
 		this._renderer.renderObject( object, ...rest );
+
+		if ( object.isBatchedMesh === true ) Object.assign( object, { sortObjects, perObjectFrustumCulled } );
 
 		material.depthWrite = depthWrite;
 		material.forceSinglePass = forceSinglePass;
@@ -326,14 +382,14 @@ export class PeelnetPassNode extends PassNode {
 	/** Draws what is kept, and over it what lies over all, with what `pass()` draws the scene with. */
 	_drawTransparents( renderer ) {
 
-		const { scene, camera } = this;
+		const { scene, _viewed: camera } = this;
 		const { mask } = camera.layers;
 		const { sortObjects, contextNode, lighting: rendererLighting } = renderer;
 		const lighting = this.lighting ?? rendererLighting;
 		const isLit = lighting.enabled;
 
-		if ( this._layers !== null ) camera.layers.mask = this._layers.mask;
-		if ( this.contextNode !== null ) renderer.contextNode = this._getContextNode( renderer );
+		renderer.contextNode = contextOf( this, renderer );
+		camera.layers.mask = this.getLayers()?.mask ?? mask;
 
 		_sceneState = RendererUtils.resetSceneState( scene, _sceneState );
 		scene.overrideMaterial = this.overrideMaterial ?? _sceneState.overrideMaterial;
@@ -349,10 +405,12 @@ export class PeelnetPassNode extends PassNode {
 			renderer.autoClear = false;
 			renderer.sortObjects = sortObjects;
 			renderer.setRenderTarget( this.renderTarget );
-			renderer.setMRT( this._mrt );
+			renderer.setMRT( this.getMRT() );
 			renderer.render( scene, camera );
 
 		}
+
+		if ( this._kept > 0 && this.depthThreshold !== null ) this._drawSurface( renderer );
 
 		renderer.lighting = rendererLighting;
 		renderer.sortObjects = sortObjects;
@@ -364,7 +422,7 @@ export class PeelnetPassNode extends PassNode {
 
 	_drawPasses( renderer, lighting, isLit ) {
 
-		const { passes, next, over } = this._stages;
+		const { passes, next, over, coverage } = this._stages;
 		const endBlending = blendAlike( renderer );
 
 		this._writeSpan();
@@ -375,7 +433,7 @@ export class PeelnetPassNode extends PassNode {
 		renderer.autoClear = renderer.autoClearColor = true;
 		renderer.autoClearDepth = renderer.autoClearStencil = renderer.sortObjects = false;
 
-		for ( const { first, target, node, shaded, afterCuts, then } of passes ) {
+		for ( const { first, target, node, shaded, every, afterCuts, then } of passes ) {
 
 			if ( afterCuts && isCut === false ) continue;
 			if ( first !== undefined ) drawQuad( renderer, first );
@@ -384,7 +442,7 @@ export class PeelnetPassNode extends PassNode {
 			lighting.enabled = isLit && shaded;
 			renderer.setRenderTarget( target );
 			renderer.setMRT( node );
-			renderer.render( this.scene, this.camera );
+			this._drawScene( renderer, every );
 
 			if ( then !== undefined ) drawQuad( renderer, then );
 
@@ -397,6 +455,7 @@ export class PeelnetPassNode extends PassNode {
 		drawQuad( renderer, { ...over, target: this.renderTarget } );
 		renderer.autoClear = true;
 
+		if ( coverage !== null ) drawQuad( renderer, coverage );
 		if ( next === null ) return;
 
 		drawQuad( renderer, next );
@@ -404,10 +463,61 @@ export class PeelnetPassNode extends PassNode {
 
 	}
 
+	/** Draws the scene into a target that is so many times smaller. The eyes of an array have places in it. */
+	_drawScene( renderer, every ) {
+
+		const { _viewed: camera } = this;
+		const viewports = every === 1 ? [] : eyesOf( camera ).map( ( eye ) => eye.viewport ).filter( ( viewport ) => viewport !== undefined );
+
+		for ( const viewport of viewports ) viewport.divideScalar( every );
+
+		renderer.render( this.scene, camera );
+
+		for ( const viewport of viewports ) viewport.multiplyScalar( every );
+
+	}
+
+	_drawSurface( renderer ) {
+
+		const endBlending = blendAlike( renderer );
+
+		this._threshold.value = this.depthThreshold;
+		renderer.setRenderObjectFunction( this._drawNearest );
+		renderer.autoClear = renderer.sortObjects = false;
+		renderer.setRenderTarget( this.renderTarget );
+		renderer.setMRT( this._stages.surface );
+		renderer.render( this.scene, this._viewed );
+		endBlending();
+
+	}
+
+	_useCoverage() {
+
+		this._coverage ??= new RenderTarget( 1, 1, { type: HalfFloatType, format: RedFormat, depthBuffer: false, samples: 0 } );
+
+	}
+
+	_clearCoverage( renderer ) {
+
+		const alpha = renderer.getClearAlpha();
+		const { r, g, b } = renderer.getClearColor( _color );
+
+		renderer.setClearColor( 0x000000, 0 );
+		renderer.setRenderTarget( this._coverage );
+		renderer.setMRT( null );
+		renderer.clear();
+		renderer.setClearColor( _color.setRGB( r, g, b ), alpha );
+
+	}
+
 	/** Whether so much moved since the last frame that this one learns nothing from it: places by a thirty-second of the frame, or depths by a bin. */
 	_isCut() {
 
 		const { camera, _span: { value: span } } = this;
+
+		// Eyes are not followed.
+		if ( this._viewed !== camera || camera.isArrayCamera === true ) return true;
+
 		const clipFromWorld = new Matrix4().multiplyMatrices( camera.projectionMatrix, camera.matrixWorldInverse );
 		const last = this._seen;
 
@@ -434,7 +544,7 @@ export class PeelnetPassNode extends PassNode {
 
 		if ( this.depthRange !== null ) [ this._depths.near, this._depths.far ] = this.depthRange;
 
-		this._depths.write( this.camera, this._span.value );
+		this._depths.write( eyesOf( this._viewed ), this._span.value );
 
 	}
 
@@ -442,9 +552,10 @@ export class PeelnetPassNode extends PassNode {
 
 		if ( this._stages === null ) return;
 
-		releasePasses( renderer, new Set( this._stages.passes.map( ( pass ) => pass.node ) ) );
+		releasePasses( renderer, new Set( [ this._stages.surface, ...this._stages.passes.map( ( pass ) => pass.node ) ] ) );
 		this._stages.dispose();
-		this._stages = null;
+		this._samples?.dispose();
+		this._stages = this._samples = null;
 
 	}
 
@@ -452,6 +563,7 @@ export class PeelnetPassNode extends PassNode {
 
 		if ( this._stages !== null ) this._release( this._built );
 
+		this._coverage?.dispose();
 		this._unwatch?.();
 		// Who draws it again, as hot reloading does, gets it again.
 		this._unwatch = null;

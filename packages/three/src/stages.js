@@ -1,10 +1,11 @@
 // A model as three.js draws it: a render target and an MRT node for every pass, and a full-screen material that resolves.
 
 import {
-	AddEquation, AlwaysDepth, BlendMode, CustomBlending, DepthStencilFormat, DepthTexture, FloatType, HalfFloatType, MaxEquation, NearestFilter, NoBlending, NodeMaterial,
-	LinearFilter, OneFactor, OneMinusSrcAlphaFactor, OneMinusSrcColorFactor, QuadMesh, RGBAFormat, RGFormat, RedFormat, RenderTarget, UnsignedByteType, UnsignedIntType, Vector4, ZeroFactor
+	AddEquation, AlwaysDepth, BlendMode, CustomBlending, DepthStencilFormat, DepthTexture, FloatType, HalfFloatType, LinearFilter, MaxEquation, NearestFilter, OneFactor,
+	OneMinusSrcAlphaFactor, OneMinusSrcColorFactor, RGBAFormat, RGFormat, RedFormat, RenderTarget, UnsignedByteType, UnsignedIntType, Vector4, ZeroFactor
 } from 'three/webgpu';
 import { Fn, cameraProjectionMatrixInverse, code, diffuseColor, glslFn, ivec2, mat4, mrt, output, positionView, renderGroup, screenCoordinate, screenSize, screenUV, texture, textureLoad, uniform, varying, vec2, vec4, wgslFn } from 'three/tsl';
+import { KEEP, fullScreen, over } from './full-screen.js';
 import { isShaded } from './model.js';
 import { aroundText, libraryText, passText, resolveText, sumText } from './shader-text.js';
 
@@ -49,36 +50,6 @@ function renderTarget( targets, depthTexture, filter = NearestFilter ) {
 
 }
 
-function fullScreen( name, properties ) {
-
-	const material = new NodeMaterial();
-
-	Object.assign( material, { name: `peelnet ${ name }`, blending: NoBlending, depthTest: false, depthWrite: false, fog: false }, properties );
-
-	return new QuadMesh( material );
-
-}
-
-// Over what lies below, and what keeps the other outputs of a target as they are.
-const OVER = { blendSrc: OneFactor, blendDst: OneMinusSrcAlphaFactor, blendSrcAlpha: OneFactor, blendDstAlpha: OneMinusSrcAlphaFactor };
-const KEEP = { blendSrc: ZeroFactor, blendDst: OneFactor, blendSrcAlpha: ZeroFactor, blendDstAlpha: OneFactor };
-
-// Draws the resolved image over a target with these outputs, or with one.
-function over( resolved, outputs ) {
-
-	const blending = { blending: CustomBlending, transparent: true, ...OVER };
-
-	if ( outputs === null ) return { quad: fullScreen( 'resolve', { fragmentNode: resolved, ...blending } ) };
-
-	const names = Object.keys( outputs.outputNodes );
-	const node = mrt( Object.fromEntries( names.map( ( name ) => [ name, name === 'output' ? resolved : vec4( 0 ) ] ) ) );
-
-	for ( const name of names ) node.setBlendMode( name, Object.assign( new BlendMode( CustomBlending ), name === 'output' ? OVER : KEEP ) );
-
-	return { quad: fullScreen( 'resolve', { outputNode: resolved, ...blending } ), node };
-
-}
-
 // What the material wrote, with the colour that it had before it was multiplied by its opacity.
 const straightColor = /*@__PURE__*/ Fn( ( builder ) => {
 
@@ -102,6 +73,21 @@ const distance = /*@__PURE__*/ Fn( ( { material } ) => {
 
 } );
 
+// What the nearest fragment writes where enough is covered: its depth, and all outputs but the image. Fragments that nobody sees write none.
+function surface( covered, threshold, outputs ) {
+
+	const kept = Fn( () => {
+
+		covered.lessThan( threshold ).or( output.a.lessThan( 1 / 255 ) ).discard();
+
+		return vec4( 0 );
+
+	} )();
+
+	return mrt( { ...outputs?.outputNodes, output: kept } ).setBlendMode( 'output', KEEP );
+
+}
+
 // Sums over a texel of a full-screen pass and the eight around it: what `read` finds there, a pixel and what is kept of it.
 function sumAround( read, add ) {
 
@@ -124,7 +110,7 @@ function sumAround( read, add ) {
 /** The passes of one model, ready to draw. `span` is the uniform of the frame's range of depth. */
 export class Stages {
 
-	constructor( model, passes, { isGlsl, depthTexture, span, outputs, fromLast } ) {
+	constructor( model, passes, { isGlsl, depthTexture, span, outputs, fromLast, coverage, threshold } ) {
 
 		const { around, resolve_reads } = model.description;
 		const library = code( libraryText( model, isGlsl ), [], isGlsl ? 'glsl' : 'wgsl' );
@@ -221,7 +207,11 @@ export class Stages {
 
 		}
 
-		this.over = over( native( resolveText( model, written, isGlsl ) )( pixel, ...texels( resolve_reads ) ), outputs );
+		const resolved = native( resolveText( model, written, isGlsl ) )( pixel, ...texels( resolve_reads ) );
+
+		this.over = over( resolved, outputs );
+		this.coverage = coverage && { target: coverage, quad: fullScreen( 'coverage', { fragmentNode: vec4( resolved.a, 0, 0, 1 ) } ) };
+		this.surface = threshold && surface( textureLoad( coverage.texture, texel ).x, threshold, outputs );
 		this._viewport = viewport.value;
 
 	}
@@ -280,7 +270,7 @@ export class Stages {
 
 		}
 
-		for ( const made of [ this.over.quad.material, this.next?.target, this.next?.quad.material ] ) made?.dispose();
+		for ( const made of [ this.over.quad.material, this.coverage?.quad.material, this.next?.target, this.next?.quad.material ] ) made?.dispose();
 
 	}
 

@@ -50,8 +50,10 @@ const options = { models: ( process.env.PEELNET_MODELS ?? 'small,medium,large,an
 for ( const backend of [ 'webgpu', 'webgl2' ] ) {
 
 	result.runs[ backend ] = await browser.run( 'timed', backend, options );
+	result.runs[ backend ].mainThread = await browser.run( 'mainThread', backend );
 	console.log( backend );
 	console.table( result.runs[ backend ] );
+	console.table( result.runs[ backend ].mainThread );
 
 }
 

@@ -4,7 +4,7 @@ import * as THREE from 'three/webgpu';
 import { cameraProjectionMatrix, modelViewMatrix, mrt, output, pass, positionLocal, vec4 } from 'three/tsl';
 import { isOrderIndependent, loadModel, peelnetPass } from '@peelnet/three';
 import { counted } from './cases.js';
-import { aspect, drawn, modelOf, replaced } from './helpers.js';
+import { aspect, drawn, modelOf } from './helpers.js';
 import { HEIGHT, WIDTH, errors, imageOf, makeRenderer, shown } from './measure.js';
 import * as scenes from './scenes.js';
 
@@ -267,18 +267,6 @@ export async function compiled( backend ) {
 	await imageOf( renderer, node, 1 );
 
 	return counts;
-
-}
-
-/** A session that begins and ends. */
-export async function session( backend ) {
-
-	const { renderer, scene, camera, model, exact } = await stand( backend );
-	const { node, problems } = await drawn( renderer, scene, camera, { model } );
-
-	await replaced( renderer.xr, 'isPresenting', true, () => node._prepare( renderer ) );
-
-	return { problems, after: off( await imageOf( renderer, node ), exact ), problem: node.problem };
 
 }
 
