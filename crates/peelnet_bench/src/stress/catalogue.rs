@@ -307,6 +307,15 @@ pub const CASES: &[Case] = &[
         }),
     },
     Case {
+        id: "lines",
+        what: "lines and labels of α = 1 and 0.99 over, between and below one to six translucent polygons close to them, a pixel wide and three",
+        breaks: "what covers is shown translucent, and lines are missed by passes over a part of the pixels (Cesium 4170, 13722)",
+        work: Work::Frames(|| {
+            let of = |cover| Trial::of_stacks(PLANES, cover, lines());
+            vec![of(1), of(3)]
+        }),
+    },
+    Case {
         id: "empty",
         what: "no object in view, a mesh without triangles",
         breaks: "a prefix sum of nothing",
@@ -476,6 +485,22 @@ fn layers(n: usize) -> Vec<Trial> {
         Trial::of_stacks(PLANES, cover, stack)
     };
     vec![of(1), of(3)]
+}
+
+/// A line over, between or below polygons, and a label before a line.
+fn lines() -> Vec<Stack> {
+    let mut all = Vec::new();
+    for (n, alpha) in [1, 2, 4, 6].into_iter().flat_map(|n| [(n, 1.0), (n, 0.99)]) {
+        let polygons = (0..n).map(|i| (4.0 + 0.02 * i as f32, 0.25 + 0.1 * i as f32));
+        for (place, line) in [("over", 0), ("between", n / 2), ("below", n)] {
+            let mut layers: Vec<_> = polygons.clone().collect();
+            layers.push((3.99 + 0.02 * line as f32, alpha));
+            all.push(stack(&format!("{alpha} {place} {n}"), layers.clone()));
+            layers.push((3.5, 0.99));
+            all.push(stack(&format!("label, {alpha} {place} {n}"), layers));
+        }
+    }
+    all
 }
 
 fn trial(stacks: Vec<Stack>) -> Trial {

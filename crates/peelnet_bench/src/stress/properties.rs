@@ -67,6 +67,10 @@ const STEP: f64 = 1.0 / 255.0;
 /// difference of two numbers that are evenly spread over a step is a third of it, and no more is seen of it than the opacity.
 const UNSTEADY: f64 = 1.0 / 3.0;
 
+/// Cases where something covers what lies behind it, and by how many steps of an 8-bit display a pixel may be off there: what is behind a nearly
+/// opaque rectangle is as good as hidden, and a line among polygons has the two steps that nobody sees.
+const OPAQUE_STEPS: [(&str, f64); 2] = [("alpha-near-one", 1.0), ("lines", 2.0)];
+
 /// What a pixel with one fragment may err by, linear light.
 const SINGLE: f64 = 1e-4;
 
@@ -258,9 +262,9 @@ fn check_pixel(
     let darkest = luminances.fold(f64::INFINITY, f64::min);
     let limit = STEP * darkest.max(1.0) + kind.uncertainty;
     findings.note(Property::Dark, darkest - luminance(&p64), limit, place);
-    if case == "alpha-near-one" {
+    if let Some((_, most)) = OPAQUE_STEPS.iter().find(|(id, _)| *id == case) {
         let steps = (0..3).map(|c| (display(p[c]) - display(kind.exact[c] as f32)).abs());
-        findings.note(Property::Opaque, steps.fold(0.0, nan_max), 1.0, place);
+        findings.note(Property::Opaque, steps.fold(0.0, nan_max), *most, place);
     }
 }
 
