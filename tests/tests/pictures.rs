@@ -65,3 +65,37 @@ fn pictures_are_the_committed_ones() {
     }
     assert!(problems.is_empty(), "{}", problems.join("\n"));
 }
+
+/// The fraction of pixels of lines and labels over translucent areas that may differ from the exact image by more than two steps of a display:
+/// what users of a globe would call right (Cesium's issues 4170 and 13722).
+const LINES_OFF: f64 = 0.001;
+
+/// The exact method, the one that is judged, and what it is compared with.
+const LINES_METHODS: [&str; 6] = [
+    "abuffer",
+    "deep-small",
+    "deep-medium",
+    "deep-large",
+    "mboit4",
+    "wboit-eq9",
+];
+
+#[test]
+fn lines_of_alpha_one_cover_translucent_areas() {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../data/lines.toml");
+    let scene = peelnet_scene::Scene::load(&file).unwrap();
+    let gpu = gpu();
+    let [exact, others @ ..] = LINES_METHODS.map(|m| draw(&gpu, &scene, m, [512, 384]).to_srgb8());
+    let off = others.map(|image| {
+        let pixels = image.chunks(3).zip(exact.chunks(3));
+        let off = pixels.filter(|(a, b)| a.iter().zip(*b).any(|(a, b)| a.abs_diff(*b) > 2));
+        off.count() as f64 / (image.len() / 3) as f64
+    });
+    for (method, off) in LINES_METHODS[1..].iter().zip(off) {
+        println!("{method}: {:.3} % of the pixels", 100.0 * off);
+    }
+    let [learned, .., of_weights] = off;
+    assert!(learned <= LINES_OFF, "{:.3} %", 100.0 * learned);
+    // Else the scene shows nothing.
+    assert!(of_weights > 20.0 * LINES_OFF, "{:.3} %", 100.0 * of_weights);
+}

@@ -389,7 +389,7 @@ macro_rules! cases {
 cases! {
     quick:
         alpha_zero, alpha_tiny, alpha_one, alpha_near_one, near_overflow, far, wide_range, coplanar, thin_slab, isolated,
-        two_layers, intersecting, grazing, emissive, opaque_mix, empty, half_float, hostile_inputs, passing, moving_camera,
+        two_layers, intersecting, grazing, emissive, opaque_mix, lines, empty, half_float, hostile_inputs, passing, moving_camera,
         deep_2000, apart;
     slow:
         high_alpha, deep, deep_20000, deep_100000

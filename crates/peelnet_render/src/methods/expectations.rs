@@ -236,7 +236,12 @@ impl KnownFailure {
 
     /// What lies behind nearly opaque layers shows.
     pub(crate) const fn translucent(reason: &'static str) -> Self {
-        Self::new(Property::Opaque, "alpha-near-one", reason)
+        Self::new(Property::Opaque, "alpha-near-one lines", reason)
+    }
+
+    /// Of polygons on both sides of a line, some in front of it are taken for hidden ones, or the reverse.
+    pub(crate) const fn lines(reason: &'static str) -> Self {
+        Self::new(Property::Opaque, "lines", reason)
     }
 
     /// Coincident fragments depend on the order of drawing.

@@ -23,7 +23,7 @@ pub(super) const METHOD: Expectations = Expectations {
         KnownFailure::swallowed("alpha-tiny deep"),
         KnownFailure::BLIND,
         KnownFailure::in_scene_units(
-            "apart alpha-near-one alpha-one coplanar deep far grazing high-alpha intersecting moving-camera thin-slab two-layers wide-range",
+            "apart alpha-near-one alpha-one coplanar deep far grazing high-alpha intersecting lines moving-camera thin-slab two-layers wide-range",
         ),
         KnownFailure::in_scene_units("alpha-tiny passing").when(half_sums),
         KnownFailure::new(

@@ -22,7 +22,7 @@ pub(super) const METHOD: Expectations = Expectations {
         KnownFailure::MAGNIFIED,
         KnownFailure::new(
             Property::Dark,
-            "high-alpha",
+            "high-alpha lines",
             "the network's own error (Tsopouridis et al. 2024)",
         ),
         KnownFailure::translucent(

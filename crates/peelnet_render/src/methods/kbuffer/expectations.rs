@@ -23,7 +23,7 @@ pub(super) const METHOD: Expectations = Expectations {
 
 const BACKGROUND: KnownFailure = stored_colors::in_bytes(
     Property::Background,
-    "alpha-zero coplanar emissive far grazing intersecting isolated moving-camera opaque-mix thin-slab \
+    "alpha-zero coplanar emissive far grazing intersecting isolated lines moving-camera opaque-mix thin-slab \
      two-layers wide-range",
 );
 
@@ -43,6 +43,8 @@ pub(super) const PLAIN: Expectations = METHOD.failing(&[
         "coplanar emissive grazing intersecting moving-camera near-overflow",
     ),
     SINGLE,
+    KnownFailure::lines("of layers beyond the places, which one hides others is not known")
+        .when(|s| s.number() <= 4),
 ]);
 
 pub(super) const HYBRID: Expectations = METHOD.failing(&[

@@ -9,7 +9,7 @@ pub(super) const METHOD: Expectations = Expectations {
     known_failures: &[
         stored_colors::in_bytes(
             Property::Background,
-            "alpha-tiny alpha-zero coplanar emissive far grazing intersecting isolated moving-camera opaque-mix \
+            "alpha-tiny alpha-zero coplanar emissive far grazing intersecting isolated lines moving-camera opaque-mix \
              thin-slab two-layers wide-range",
         ),
         stored_colors::in_bytes(

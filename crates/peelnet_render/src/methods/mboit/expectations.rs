@@ -23,6 +23,9 @@ fn guarantees(spec: &MethodSpec) -> Guarantees {
 const BLURRED: KnownFailure =
     KnownFailure::translucent("moments blur what lies close together (Münstermann et al. 2018)");
 
+const BLURRED_LINES: KnownFailure =
+    KnownFailure::lines("moments blur what lies close together (Münstermann et al. 2018)");
+
 const fn jumping(cases: &'static str) -> KnownFailure {
     let reason =
         "16-bit moments without the paper's quantisation: roots jump where they come close";
@@ -57,7 +60,7 @@ pub(super) const FOUR: Expectations = ESTIMATED.failing(&[
     KnownFailure::unsettled(Property::Transmittance, "isolated"),
     KnownFailure::unsettled(
         Property::Order,
-        "alpha-near-one grazing high-alpha intersecting moving-camera passing",
+        "alpha-near-one grazing high-alpha intersecting lines moving-camera passing",
     ),
     KnownFailure::reordered("deep near-overflow"),
 ]);
@@ -67,11 +70,12 @@ pub(super) const SIX: Expectations = ESTIMATED.failing(&[
     magnified("apart high-alpha").when(half_statistics),
     KnownFailure::swallowed("deep"),
     BLURRED.when(half_statistics),
+    BLURRED_LINES,
     jumping("passing moving-camera"),
     KnownFailure::unsettled(Property::Transmittance, "isolated two-layers"),
     KnownFailure::unsettled(
         Property::Order,
-        "alpha-near-one apart deep emissive grazing high-alpha intersecting moving-camera opaque-mix two-layers passing",
+        "alpha-near-one apart deep emissive grazing high-alpha intersecting lines moving-camera opaque-mix two-layers passing",
     ),
     KnownFailure::new(
         Property::Order,
@@ -87,21 +91,23 @@ pub(super) const EIGHT: Expectations = ESTIMATED.failing(&[
     KnownFailure::swallowed("near-overflow").when(|s| own_out(s) && half_sums(s)),
     KnownFailure::reordered("deep").when(|s| own_out(s) && half_sums(s) && !half_statistics(s)),
     BLURRED.when(half_statistics),
+    BLURRED_LINES,
     jumping("passing moving-camera"),
     KnownFailure::unsettled(Property::Transmittance, "isolated two-layers"),
     KnownFailure::unsettled(
         Property::Order,
-        "apart alpha-near-one deep emissive far grazing high-alpha intersecting moving-camera near-overflow \
+        "apart alpha-near-one deep emissive far grazing high-alpha intersecting lines moving-camera near-overflow \
          opaque-mix passing two-layers",
     ),
 ]);
 
 pub(super) const TRIGONOMETRIC: Expectations = ESTIMATED.failing(&[
     magnified("high-alpha intersecting moving-camera").when(|s| s.number() == 3),
-    magnified("apart passing").when(|s| s.number() == 3 && half_statistics(s)),
+    magnified("apart lines passing").when(|s| s.number() == 3 && half_statistics(s)),
     KnownFailure::swallowed("deep near-overflow"),
     KnownFailure::swallowed("alpha-tiny").when(|s| s.number() == 2 && half_statistics(s)),
     BLURRED.when(|s| !own_out(s) && (s.number() != 3 || half_statistics(s))),
+    BLURRED_LINES,
     KnownFailure::new(
         Property::Transmittance,
         "two-layers",
@@ -110,7 +116,7 @@ pub(super) const TRIGONOMETRIC: Expectations = ESTIMATED.failing(&[
     .when(|s| !own_out(s) && !half_statistics(s)),
     KnownFailure::unsettled(
         Property::Order,
-        "deep high-alpha intersecting moving-camera passing",
+        "deep high-alpha intersecting lines moving-camera passing",
     ),
     KnownFailure::unsettled(Property::Order, "apart")
         .when(|s| s.number() == 3 && half_statistics(s)),

@@ -14,6 +14,10 @@ const BORDERS: KnownFailure = KnownFailure::new(
     "what lies between a slab's known ends is guessed, and where a layer passes a slab's border it is another guess, or none",
 );
 
+const HIDING: KnownFailure = KnownFailure::lines(
+    "what lies between a slab's known ends is guessed, also where one of those layers hides what is behind it",
+);
+
 const ROUNDED_OTHERWISE: KnownFailure = KnownFailure::new(
     Property::Scale,
     "thin-slab",
@@ -22,7 +26,7 @@ const ROUNDED_OTHERWISE: KnownFailure = KnownFailure::new(
 
 const SWALLOWED: KnownFailure = KnownFailure::swallowed("deep");
 
-pub(super) const METHOD: Expectations = SLABS.failing(&[SWALLOWED, BORDERS]);
+pub(super) const METHOD: Expectations = SLABS.failing(&[SWALLOWED, BORDERS, HIDING]);
 
 pub(super) const SMALL: Expectations = SLABS.failing(&[
     SWALLOWED,
@@ -30,6 +34,6 @@ pub(super) const SMALL: Expectations = SLABS.failing(&[
     KnownFailure::unsettled(Property::Order, "near-overflow"),
 ]);
 
-pub(super) const MEDIUM: Expectations = SLABS.failing(&[BORDERS, ROUNDED_OTHERWISE]);
+pub(super) const MEDIUM: Expectations = SLABS.failing(&[BORDERS, ROUNDED_OTHERWISE, HIDING]);
 
-pub(super) const LARGE: Expectations = SLABS.failing(&[SWALLOWED, BORDERS]);
+pub(super) const LARGE: Expectations = SLABS.failing(&[SWALLOWED, BORDERS, HIDING]);

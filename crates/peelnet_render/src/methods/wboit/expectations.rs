@@ -38,7 +38,7 @@ const fn unweighed_lamp(property: Property) -> KnownFailure {
 
 /// Where weights of equations 7 and 8, and the two steepest of other authors, differ between scales by more than a step of a display.
 const STEEP: KnownFailure = KnownFailure::in_scene_units(
-    "alpha-near-one alpha-one alpha-zero apart coplanar deep emissive far grazing high-alpha intersecting moving-camera \
+    "alpha-near-one alpha-one alpha-zero apart coplanar deep emissive far grazing high-alpha intersecting lines moving-camera \
      opaque-mix passing thin-slab two-layers wide-range",
 );
 
