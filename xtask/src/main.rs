@@ -35,7 +35,8 @@ cargo xtask <command>
   bevy            the Bevy plugin in bevy/: lints, tests, and its comparison against the exact image, into out/bevy (not part of test: Bevy takes
                   minutes to compile)
   wasm            check the crates that run in a browser for wasm32
-  web             build the viewer's page into out/web (needs the Rust target wasm32-unknown-unknown)
+  web             build the viewer's page into out/web, and the example for three.js into out/web/three (needs the Rust target wasm32-unknown-unknown,
+                  Node.js 20 and npm)
   view-test [STEP…]
                   tests of the viewer as people see it: the window under Xvfb, the page in Chromium (minutes; needs Node.js 20 and npm);
                   steps: window, page
@@ -43,7 +44,8 @@ cargo xtask <command>
   search          a million random fragment lists for every property (minutes)
   faults          extract, train and bench killed fifty times each (minutes)
   fuzz [SECONDS]  each fuzz target for so long (default 1800), on nightly Rust
-  three           the package for three.js: types, tests in Chromium on WebGPU and WebGL 2 (minutes; needs Node.js 20 and npm)
+  three           the package for three.js: types, tests in Chromium on WebGPU and WebGL 2; then the examples for Babylon.js and PlayCanvas (minutes; needs
+                  Node.js 20 and npm)
   python [--ray]  the Python package: lints, pip install ./python, its tests; with Ray in it (700 MB from PyPI) also those of peelnet.ray
   cluster [--workers N,…] [--scenes N] [--folders]
                   lints of deploy/; datasets and models in an S3 server; Ray with two nodes in a network namespace: scenes extracted to S3

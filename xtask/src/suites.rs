@@ -32,7 +32,10 @@ pub const SUITES: [Step; 12] = [
         again("PROPTEST_CASES", "1000000", tests)
     }),
     ("fuzz", || fuzz("60")),
-    ("three", || npm("packages/three", &[])),
+    ("three", || {
+        npm("packages/three", &[])?;
+        npm("packages/engines", &[])
+    }),
     ("bevy", bevy),
     ("view-test", || view(&[])),
     ("cluster", || cluster(&[])),

@@ -1,6 +1,6 @@
 //! The viewer's page: `cargo xtask web`.
 
-use crate::{Outcome, captured, command, root, start, target_folder};
+use crate::{Outcome, captured, command, root, run, start, target_folder};
 use std::{env, fs, path::Path};
 
 pub const TARGET: &str = "wasm32-unknown-unknown";
@@ -33,7 +33,11 @@ pub fn web() -> Outcome {
     start(glue.arg("out/web"))?;
     let index = root().join("crates/peelnet_view/web/index.html");
     fs::copy(&index, folder.join("index.html")).map_err(|e| format!("{}: {e}", index.display()))?;
-    sizes(&folder)
+    sizes(&folder)?;
+    // The example of the package for three.js, a page of its own.
+    run("npm --prefix packages/three ci --no-audit --no-fund")?;
+    let mut example = command("npm --prefix packages/three run example --");
+    start(example.arg(folder.join("three")))
 }
 
 fn sizes(folder: &Path) -> Outcome {

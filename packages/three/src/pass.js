@@ -552,7 +552,9 @@ export class PeelnetPassNode extends PassNode {
 
 		if ( this._stages === null ) return;
 
-		releasePasses( renderer, new Set( [ this._stages.surface, ...this._stages.passes.map( ( pass ) => pass.node ) ] ) );
+		const { passes, surface } = this._stages;
+
+		releasePasses( renderer, new Set( [ ...passes.map( ( pass ) => pass.node ), ...surface === null ? [] : [ surface ] ] ) );
 		this._stages.dispose();
 		this._samples?.dispose();
 		this._stages = this._samples = null;
