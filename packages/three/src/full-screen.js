@@ -1,6 +1,6 @@
 // Materials and drawings that fill a target.
 
-import { BlendMode, CustomBlending, NoBlending, NodeMaterial, OneFactor, OneMinusSrcAlphaFactor, QuadMesh, ZeroFactor } from 'three/webgpu';
+import { BlendMode, CustomBlending, NoBlending, NodeMaterial, OneFactor, OneMinusSrcAlphaFactor, OneMinusSrcColorFactor, QuadMesh, ZeroFactor } from 'three/webgpu';
 import { mrt, vec4 } from 'three/tsl';
 
 const factors = ( source, destination ) => ( { blending: CustomBlending, blendSrc: source, blendDst: destination, blendSrcAlpha: source, blendDstAlpha: destination } );
@@ -8,6 +8,8 @@ const mode = ( blending ) => Object.assign( new BlendMode(), blending );
 
 /** Colours that are multiplied by their coverage, over what lies below. */
 export const OVER = /*@__PURE__*/ factors( OneFactor, OneMinusSrcAlphaFactor );
+/** Coverages, of which both let through what they leave: 1 − (1 − a)(1 − b). */
+export const TOGETHER = { ...factors( OneFactor, OneFactor ), blendDst: OneMinusSrcColorFactor };
 export const ADD = /*@__PURE__*/ factors( OneFactor, OneFactor );
 /** Leaves a target as it is. */
 export const KEEP = /*@__PURE__*/ mode( factors( ZeroFactor, OneFactor ) );

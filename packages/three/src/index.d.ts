@@ -117,7 +117,7 @@ export function peelnetPass( scene: Scene, camera: Camera, options: PeelnetPassO
 
 /**
  * Whether a material can be drawn by the learned weights. Others are drawn as three.js draws them: additive ones and those that ignore depth after
- * it, the rest with the opaque objects.
+ * it, transmissive ones in their places among the objects, the rest with the opaque objects.
  */
 export function isOrderIndependent( material: Material ): boolean;
 

@@ -29,14 +29,17 @@ const isNode = ( value ) => value?.isNode === true;
 // Light that adds to what is seen, and what ignores depth, such as labels and gizmos: drawn after all others, sorted.
 const isOver = ( material ) => material.transparent === true && ( material.depthTest === false || material.blending === AdditiveBlending );
 
+// What shows what lies behind it, bent or blurred.
+const isLens = ( material ) => material.transmission > 0 || isNode( material.transmissionNode ) || isNode( material.backdropNode );
+
 /**
  * Whether a material is drawn by the learned weights. Others are drawn as three.js draws them: additive ones and those that ignore depth after
- * it, the rest (transmissive, with a fragment or a depth of their own, …) with the opaque objects.
+ * it, transmissive ones in their places among the objects, the rest (with a fragment or a depth of their own, …) with the opaque objects.
  */
 export function isOrderIndependent( material ) {
 
-	return material.transparent === true && material.blending === NormalBlending && material.depthTest !== false
-		&& ! ( material.transmission > 0 ) && ! [ 'transmissionNode', 'backdropNode', 'fragmentNode', 'depthNode' ].some( ( name ) => isNode( material[ name ] ) );
+	return material.transparent === true && material.blending === NormalBlending && material.depthTest !== false && isLens( material ) === false
+		&& isNode( material.fragmentNode ) === false && isNode( material.depthNode ) === false;
 
 }
 
@@ -88,6 +91,8 @@ export class PeelnetPassNode extends PassNode {
 		this._threshold = uniform( 0 ).setGroup( renderGroup );
 		this._depths = new DepthRange();
 		this._listed = new Set();
+		// Objects of the frame that are drawn by the weights, and lenses over them, far ones first.
+		this._rounds = [];
 		this._stages = null;
 		this._samples = null;
 		this._coverage = null;
@@ -99,7 +104,8 @@ export class PeelnetPassNode extends PassNode {
 		this._unwatch = null;
 
 		this._drawBelow = ( object, ...rest ) => this._drawOrKeep( object, rest );
-		this._drawTransparent = ( object, ...rest ) => this._drawKept( object, rest, false );
+		this._drawTransparent = ( object, ...rest ) => this._round.kept.has( object ) && this._drawKept( object, rest, false );
+		this._drawLens = ( object, ...rest ) => this._round.lenses.has( object ) && isLens( rest[ 3 ] ) && this._drawPlain( object, rest );
 		this._drawNearest = ( object, ...rest ) => this._drawKept( object, rest, true );
 		this._drawOver = ( object, ...rest ) => this._isOver( object, rest[ 3 ] ) && this._renderer.renderObject( object, ...rest );
 
@@ -193,13 +199,13 @@ export class PeelnetPassNode extends PassNode {
 		// What lies below: opaque objects, and transparent ones that no weight can blend. The others are only noted.
 		this._depths.reset();
 		this._listed.clear();
-		this._kept = this._over = 0;
+		this._rounds.length = this._over = 0;
 		renderer.setRenderObjectFunction( this._drawBelow );
 		super.updateBefore( frame );
 
-		if ( this._coverage !== null && ( this._stages === null || this._kept === 0 ) ) this._clearCoverage( renderer );
+		if ( this._coverage !== null ) this._clearCoverage( renderer );
 
-		if ( this._kept + this._over > 0 ) this._drawTransparents( renderer );
+		if ( this._rounds.length + this._over > 0 ) this._drawTransparents( renderer );
 
 	}
 
@@ -313,7 +319,10 @@ export class PeelnetPassNode extends PassNode {
 
 		if ( this._isKept( object, material ) ) {
 
-			this._kept ++;
+			// Objects come from far to near: what follows a lens is drawn over it.
+			if ( this._rounds.length === 0 || this._rounds.at( - 1 ).lenses.size > 0 ) this._rounds.push( { kept: new Set(), lenses: new Set() } );
+
+			this._rounds.at( - 1 ).kept.add( object );
 
 			if ( this.depthRange === null ) for ( const eye of eyesOf( this._viewed ) ) this._depths.add( object, eye.matrixWorldInverse );
 
@@ -321,17 +330,28 @@ export class PeelnetPassNode extends PassNode {
 
 			this._over ++;
 
+		} else if ( isLens( material ) && this._rounds.length > 0 ) {
+
+			this._rounds.at( - 1 ).lenses.add( object );
+
 		} else {
 
-			const { depthWrite } = material;
-
-			// Glass behind it is not hidden by what can be seen through.
-			if ( material.transparent === true ) material.depthWrite = false;
-
-			this._renderer.renderObject( object, ...rest );
-			material.depthWrite = depthWrite;
+			this._drawPlain( object, rest );
 
 		}
+
+	}
+
+	_drawPlain( object, rest ) {
+
+		const material = rest[ 3 ];
+		const { depthWrite } = material;
+
+		// Glass behind it is not hidden by what can be seen through.
+		if ( material.transparent === true ) material.depthWrite = false;
+
+		this._renderer.renderObject( object, ...rest );
+		material.depthWrite = depthWrite;
 
 	}
 
@@ -397,20 +417,29 @@ export class PeelnetPassNode extends PassNode {
 		renderer.opaque = false;
 		renderer.transparent = true;
 
-		if ( this._kept > 0 ) this._drawPasses( renderer, lighting, isLit );
+		const drawSorted = ( draw ) => {
 
-		if ( this._over > 0 ) {
-
-			renderer.setRenderObjectFunction( this._drawOver );
+			renderer.setRenderObjectFunction( draw );
 			renderer.autoClear = false;
 			renderer.sortObjects = sortObjects;
 			renderer.setRenderTarget( this.renderTarget );
 			renderer.setMRT( this.getMRT() );
 			renderer.render( scene, camera );
 
+		};
+
+		if ( this._rounds.length > 0 ) this._writeSpan();
+
+		for ( this._round of this._rounds ) {
+
+			this._drawPasses( renderer, lighting, isLit );
+
+			if ( this._round.lenses.size > 0 ) drawSorted( this._drawLens );
+
 		}
 
-		if ( this._kept > 0 && this.depthThreshold !== null ) this._drawSurface( renderer );
+		if ( this._over > 0 ) drawSorted( this._drawOver );
+		if ( this._rounds.length > 0 && this.depthThreshold !== null ) this._drawSurface( renderer );
 
 		renderer.lighting = rendererLighting;
 		renderer.sortObjects = sortObjects;
@@ -425,9 +454,9 @@ export class PeelnetPassNode extends PassNode {
 		const { passes, next, over, coverage } = this._stages;
 		const endBlending = blendAlike( renderer );
 
-		this._writeSpan();
-
-		const isCut = next === null || this._isCut();
+		// What the last frame shows is of all its objects.
+		const isWhole = next !== null && this._rounds.length === 1;
+		const isCut = isWhole === false || this._isCut();
 
 		renderer.setRenderObjectFunction( this._drawTransparent );
 		renderer.autoClear = renderer.autoClearColor = true;
@@ -453,10 +482,12 @@ export class PeelnetPassNode extends PassNode {
 
 		renderer.autoClear = false;
 		drawQuad( renderer, { ...over, target: this.renderTarget } );
-		renderer.autoClear = true;
 
 		if ( coverage !== null ) drawQuad( renderer, coverage );
-		if ( next === null ) return;
+
+		renderer.autoClear = true;
+
+		if ( isWhole === false ) return;
 
 		drawQuad( renderer, next );
 		this._stages.swap();

@@ -5,7 +5,7 @@ import {
 	OneMinusSrcAlphaFactor, OneMinusSrcColorFactor, RGBAFormat, RGFormat, RedFormat, RenderTarget, UnsignedByteType, UnsignedIntType, Vector4, ZeroFactor
 } from 'three/webgpu';
 import { Fn, cameraProjectionMatrixInverse, code, diffuseColor, glslFn, ivec2, mat4, mrt, output, positionView, renderGroup, screenCoordinate, screenSize, screenUV, texture, textureLoad, uniform, varying, vec2, vec4, wgslFn } from 'three/tsl';
-import { KEEP, fullScreen, over } from './full-screen.js';
+import { KEEP, TOGETHER, fullScreen, over } from './full-screen.js';
 import { isShaded } from './model.js';
 import { aroundText, libraryText, passText, resolveText, sumText } from './shader-text.js';
 
@@ -210,7 +210,7 @@ export class Stages {
 		const resolved = native( resolveText( model, written, isGlsl ) )( pixel, ...texels( resolve_reads ) );
 
 		this.over = over( resolved, outputs );
-		this.coverage = coverage && { target: coverage, quad: fullScreen( 'coverage', { fragmentNode: vec4( resolved.a, 0, 0, 1 ) } ) };
+		this.coverage = coverage && { target: coverage, quad: fullScreen( 'coverage', { fragmentNode: vec4( resolved.aaaa ), transparent: true, ...TOGETHER } ) };
 		this.surface = threshold && surface( textureLoad( coverage.texture, texel ).x, threshold, outputs );
 		this._viewport = viewport.value;
 

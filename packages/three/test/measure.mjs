@@ -51,9 +51,10 @@ for ( const backend of [ 'webgpu', 'webgl2' ] ) {
 
 	result.runs[ backend ] = await browser.run( 'timed', backend, options );
 	result.runs[ backend ].mainThread = await browser.run( 'mainThread', backend );
+	result.runs[ backend ].afterCompiling = await browser.run( 'afterCompiling', backend );
 	console.log( backend );
 	console.table( result.runs[ backend ] );
-	console.table( result.runs[ backend ].mainThread );
+	console.table( { ...result.runs[ backend ].mainThread, afterCompiling: result.runs[ backend ].afterCompiling } );
 
 }
 

@@ -423,6 +423,15 @@ for ( const backend of [ 'webgpu', 'webgl2' ] ) {
 
 		} );
 
+		test( 'an object that transmits light shows glass behind it, and glass before it, as in three.js', async () => {
+
+			const { problems, largest } = await run( 'transmissive', backend );
+
+			assert.deepEqual( problems, [] );
+			assert.ok( largest <= STEP, String( largest ) );
+
+		} );
+
 		test( 'bundles are drawn object by object', async () => {
 
 			const { first, later, kept } = await run( 'bundled', backend );

@@ -108,6 +108,38 @@ export async function mainThread( backend, { model = 'medium', rounds = 15 } ) {
 
 }
 
+/** Milliseconds of the first frame after compileAsync, of `pass()` and of this pass, each in a renderer of its own: medians. */
+export async function afterCompiling( backend, { model = 'medium', rounds = 5 } ) {
+
+	const times = { pass: [], peelnet: [] };
+
+	for ( let round = 0; round < rounds; round ++ ) for ( const key of Object.keys( times ) ) {
+
+		const renderer = await makeRenderer( backend );
+		const scene = scenes.fifty();
+		const camera = scenes.perspective( aspect );
+		const node = key === 'pass' ? pass( scene, camera ) : peelnetPass( scene, camera, { model: await modelOf( model ) } );
+		const pipeline = new THREE.RenderPipeline( renderer, node );
+
+		await node.compileAsync( renderer );
+		nextFrame( renderer );
+
+		const start = performance.now();
+
+		pipeline.render();
+		await renderer.backend.device?.queue.onSubmittedWorkDone();
+		times[ key ].push( performance.now() - start );
+		renderer.dispose();
+		renderer.domElement.remove();
+
+	}
+
+	const median = ( list ) => list.sort( ( a, b ) => a - b )[ list.length >> 1 ];
+
+	return { pass: median( times.pass ), peelnet: median( times.peelnet ), ratio: median( times.peelnet ) / median( times.pass ) };
+
+}
+
 /**
  * Times of a frame, each method in turn for several rounds, so that a machine that slows down slows all of them. Every ratio is
  * of one round; the median of the rounds is returned.

@@ -270,6 +270,21 @@ export async function compiled( backend ) {
 
 }
 
+/** Glass behind an object that transmits light, and before it, as three.js's pass shows cards that do not meet. */
+export async function transmissive( backend ) {
+
+	const { renderer, scene, near, camera, model } = await stand( backend );
+	const lens = card( 1.5, new THREE.MeshPhysicalMaterial( { transmission: 1, roughness: 0, color: 0xffe0c0 } ) );
+
+	near.position.z = 2.5;
+	scenes.lights( scene ).add( lens );
+
+	const { image, problems } = await drawn( renderer, scene, camera, { model } );
+
+	return { problems, ...errors( image, await imageOf( renderer, pass( scene, camera ) ) ) };
+
+}
+
 /** A model that is loaded by its address, and what is said of one that is not there. */
 export async function loaded( backend ) {
 
