@@ -44,17 +44,16 @@ await browser.page.exposeFunction( 'processorTime', () => {
 } );
 
 const { three } = await browser.run( 'versions', 'webgpu' );
-const result = { three, browser: browser.version, processor: cpus()[ 0 ].model, cores: cpus().length, runs: {} };
+const result = { three, browser: browser.version, processor: cpus()[ 0 ].model, cores: cpus().length, runs: {}, threads: {} };
 const options = { models: ( process.env.PEELNET_MODELS ?? 'small,medium,large,anchored-small,one' ).split( ',' ), ranges: ( process.env.PEELNET_RANGES ?? 'pixel,frame' ).split( ',' ), rounds: Number( process.env.PEELNET_ROUNDS ?? 5 ), frames: 3, requiredLimits: JSON.parse( process.env.PEELNET_LIMITS ?? '{}' ) };
 
 for ( const backend of [ 'webgpu', 'webgl2' ] ) {
 
 	result.runs[ backend ] = await browser.run( 'timed', backend, options );
-	result.runs[ backend ].mainThread = await browser.run( 'mainThread', backend );
-	result.runs[ backend ].afterCompiling = await browser.run( 'afterCompiling', backend );
+	result.threads[ backend ] = { ...await browser.run( 'mainThread', backend ), 'first frame': await browser.run( 'afterCompiling', backend ) };
 	console.log( backend );
 	console.table( result.runs[ backend ] );
-	console.table( { ...result.runs[ backend ].mainThread, afterCompiling: result.runs[ backend ].afterCompiling } );
+	console.table( result.threads[ backend ] );
 
 }
 
