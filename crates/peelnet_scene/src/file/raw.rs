@@ -4,8 +4,14 @@ use crate::{
     camera::Camera, material::RawMaterial, parameters::parameters, pattern::Pattern,
     scatter::Scatter, shapes::Shape,
 };
-use serde::{Deserialize, Deserializer, de::Error as _};
-use std::path::PathBuf;
+use serde::{
+    Deserialize, Deserializer,
+    de::{
+        Error as _, MapAccess, SeqAccess, Visitor,
+        value::{MapAccessDeserializer, SeqAccessDeserializer},
+    },
+};
+use std::{fmt, path::PathBuf};
 use toml::Value;
 
 parameters! {
@@ -40,14 +46,27 @@ const fn one() -> f32 {
     1.0
 }
 
-/// `[scatter]` or `[[scatter]]`: through a value, so that the inner error and not "no variant matched" is reported.
+/// `[scatter]` or `[[scatter]]`, read where they stand: an error has the line of its key.
 fn one_or_many<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<Scatter>, D::Error> {
-    let all = match Value::deserialize(deserializer)? {
-        Value::Array(list) => list,
-        one => vec![one],
-    };
-    let read = |value| Scatter::deserialize(value).map_err(D::Error::custom);
-    all.into_iter().map(read).collect()
+    struct OneOrMany;
+
+    impl<'de> Visitor<'de> for OneOrMany {
+        type Value = Vec<Scatter>;
+
+        fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+            f.write_str("a table or an array of tables")
+        }
+
+        fn visit_seq<A: SeqAccess<'de>>(self, all: A) -> Result<Vec<Scatter>, A::Error> {
+            Vec::deserialize(SeqAccessDeserializer::new(all))
+        }
+
+        fn visit_map<A: MapAccess<'de>>(self, one: A) -> Result<Vec<Scatter>, A::Error> {
+            Scatter::deserialize(MapAccessDeserializer::new(one)).map(|one| vec![one])
+        }
+    }
+
+    deserializer.deserialize_any(OneOrMany)
 }
 
 #[derive(Debug, Deserialize)]
