@@ -129,7 +129,8 @@ fn bad_scene_files() {
     let lights = "[[light]]\nposition = [1, 1, 1]\n".repeat(peelnet_scene::MAX_LIGHTS + 1);
     assert_refused(load(&lights), "light & 16385 lights & at most 16384");
     // The second of two scatters, on its own line.
-    let scatter = "[[scatter]]\ncount = 1\nmesh = { shape = 'quad' }\nmin = [0, 0, 0]\nmax = [1, 1, 1]\n";
+    let scatter =
+        "[[scatter]]\ncount = 1\nmesh = { shape = 'quad' }\nmin = [0, 0, 0]\nmax = [1, 1, 1]\n";
     let line = 1 + CAMERA.matches('\n').count() + 2 * scatter.matches('\n').count();
     let text = format!("{scatter}{scatter}bogus = 1\n");
     assert_refused(load(&text), &format!("s.toml:{line}: & bogus"));
