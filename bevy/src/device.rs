@@ -1,9 +1,6 @@
 //! What a device must be able to do.
 
-use crate::{
-    model::{Pass, PeelnetModel, Target},
-    shader_text::GROUP,
-};
+use crate::model::{Pass, PeelnetModel, Target};
 use bevy::{
     ecs::resource::Resource,
     platform::collections::HashMap,
@@ -25,13 +22,6 @@ pub(crate) fn refusal_of(
     adapter: &RenderAdapter,
 ) -> Option<String> {
     let limits = device.limits();
-    let groups = GROUP + 1;
-    if (limits.max_bind_groups as usize) < groups {
-        return Some(format!(
-            "{groups} bind groups are needed (Bevy's four and one for the statistics), the device has {}",
-            limits.max_bind_groups
-        ));
-    }
     let cost = |target: &Target| target.format.target_pixel_byte_cost().unwrap_or_default();
     for Pass { name, targets, .. } in &model.description.passes {
         for (found, what, allowed) in [

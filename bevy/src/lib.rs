@@ -3,6 +3,7 @@
 mod depths;
 mod device;
 mod error;
+mod group;
 mod model;
 mod pass;
 mod phase;
@@ -16,7 +17,7 @@ pub use model::PeelnetModel;
 use bevy::{
     core_pipeline::{
         FullscreenShader,
-        core_3d::{main_opaque_pass_3d, main_transparent_pass_3d},
+        core_3d::{Transparent3d, main_opaque_pass_3d, main_transparent_pass_3d},
         schedule::{Core3d, Core3dSystems},
     },
     pbr::main_transmissive_pass_3d,
@@ -25,7 +26,9 @@ use bevy::{
         Extract, ExtractSchedule, GpuResourceAppExt, Render, RenderApp, RenderStartup,
         RenderSystems,
         extract_component::{ExtractComponent, ExtractComponentPlugin},
+        render_phase::AddRenderCommand,
         render_resource::SpecializedRenderPipelines,
+        texture::CachedTexture,
     },
     shader::{Shader, ShaderImport},
 };
@@ -60,7 +63,21 @@ pub enum DepthRange {
 pub struct LearnedTransparency {
     /// Where the range of depths comes from.
     pub depth_range: DepthRange,
+    /// Coverage at and above which transparent surfaces write the depth of their nearest fragment into the camera's depth texture: for depth of field
+    /// and whatever else reads it after the main pass. Costs one more drawing of all of them, without light.
+    pub depth_threshold: Option<f32>,
+    /// Whether render systems get a [`CoverageMask`].
+    pub mask: bool,
 }
+
+/// How much of each pixel the weighed surfaces cover, from 0 to 1, in the first channel: for render systems such as those of temporal anti-aliasing and
+/// denoisers.
+///
+/// A component of the view's entity in the render world, from the preparation of bind groups to the end of the frame. The texture has the size of the camera's target
+/// and one sample a pixel, and is drawn before Bevy's own transparent surfaces. Views that [ask for it](LearnedTransparency::mask) have it in each
+/// frame in which a surface is weighed.
+#[derive(Clone, Component)]
+pub struct CoverageMask(pub CachedTexture);
 
 /// Adds [`LearnedTransparency`]. Must come after `DefaultPlugins`.
 pub struct PeelnetPlugin(Result<PeelnetModel, PeelnetError>);
@@ -118,6 +135,7 @@ impl Plugin for PeelnetPlugin {
             .init_gpu_resource::<SpecializedRenderPipelines<Setup>>()
             .init_gpu_resource::<view::Bilinear>()
             .init_gpu_resource::<view::LearnedViews>()
+            .add_render_command::<Transparent3d, phase::DrawWeighed>()
             .add_systems(RenderStartup, report_new_device)
             .add_systems(
                 ExtractSchedule,
@@ -135,11 +153,15 @@ impl Plugin for PeelnetPlugin {
             )
             .add_systems(
                 Core3d,
-                pass::learned_transparent_pass
-                    .after(main_opaque_pass_3d)
-                    .after(main_transmissive_pass_3d)
-                    .before(main_transparent_pass_3d)
-                    .in_set(Core3dSystems::MainPass),
+                (
+                    pass::learned_transparent_pass
+                        .after(main_opaque_pass_3d)
+                        .after(main_transmissive_pass_3d)
+                        .before(main_transparent_pass_3d)
+                        .in_set(Core3dSystems::MainPass),
+                    // Behind volumetric fog, which counts up to opaque surfaces and is drawn between these sets.
+                    pass::learned_depth_pass.in_set(Core3dSystems::EarlyPostProcess),
+                ),
             );
     }
 }

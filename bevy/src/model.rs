@@ -1,12 +1,15 @@
 //! The exported network: its shader text, and the description of the passes around it.
 
-use crate::error::PeelnetError;
+use crate::{error::PeelnetError, group::FIRST_BINDING};
 use bevy::render::render_resource::TextureFormat;
 use serde::Deserialize;
 use std::{borrow::Cow, fs, path::Path};
 
 const FORMAT: &str = "peelnet-export";
 const FORMAT_VERSION: u32 = 1;
+
+/// The name of the target that the resolve writes coverage into, on request. The expression is in the resolve's text.
+pub(crate) const MASK: &str = "mask";
 
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
 #[serde(rename_all = "lowercase")]
@@ -29,6 +32,19 @@ pub(crate) struct Target {
     pub write: String,
 }
 
+impl Target {
+    fn mask() -> Self {
+        Self {
+            name: MASK.into(),
+            format: TextureFormat::R16Float,
+            clear: [0.0; 4],
+            color: Blend::Add,
+            alpha: Blend::Add,
+            write: String::new(),
+        }
+    }
+}
+
 /// One drawing of all transparent surfaces.
 #[derive(Clone, Debug, Deserialize, PartialEq)]
 pub(crate) struct Pass {
@@ -41,6 +57,9 @@ pub(crate) struct Pass {
     /// The statement before the writes.
     pub compute: Option<String>,
     pub targets: Vec<Target>,
+    /// Whether it writes the depths of fragments, into the view's.
+    #[serde(skip)]
+    pub writes_depth: bool,
 }
 
 const fn every_pixel() -> u32 {
@@ -48,6 +67,20 @@ const fn every_pixel() -> u32 {
 }
 
 impl Pass {
+    /// The one after all others, on request: the depth of the nearest fragment where enough is covered. Nothing of what is barely there counts as
+    /// a surface.
+    fn depth() -> Self {
+        let compute = "if alpha < 1.0 / 255.0 || mask < peelnet_depths.w { discard; }";
+        Self {
+            name: "depth".into(),
+            every: 1,
+            reads: vec![MASK.into()],
+            compute: Some(compute.into()),
+            targets: vec![],
+            writes_depth: true,
+        }
+    }
+
     /// Whether it draws fewer pixels than the view has.
     pub const fn is_small(&self) -> bool {
         self.every > 1
@@ -84,6 +117,8 @@ pub(crate) struct Around {
 pub struct PeelnetModel {
     pub(crate) wgsl: Cow<'static, str>,
     pub(crate) description: Description,
+    pub(crate) mask: Target,
+    depth: Pass,
 }
 
 #[derive(Deserialize)]
@@ -179,7 +214,12 @@ impl PeelnetModel {
         }
         let wgsl = wgsl.into();
         match description.check(&wgsl) {
-            Ok(()) => Ok(Self { wgsl, description }),
+            Ok(()) => Ok(Self {
+                wgsl,
+                description,
+                mask: Target::mask(),
+                depth: Pass::depth(),
+            }),
             Err(reason) => Err(PeelnetError(format!(
                 "this plugin cannot draw with a network of recipe {:?}: {reason}; take small, medium, large, one or an anchored one",
                 description.recipe
@@ -201,10 +241,16 @@ impl PeelnetModel {
         passes.flat_map(|pass| &pass.targets).map(bytes).sum()
     }
 
-    /// The targets of all passes, each with [`Pass::every`] of its own.
+    /// The passes over surfaces: those of the description, and the one that writes depth.
+    pub(crate) fn passes(&self) -> impl Iterator<Item = &Pass> {
+        self.description.passes.iter().chain([&self.depth])
+    }
+
+    /// The targets of all passes, each with [`Pass::every`] of its own, and the mask.
     pub(crate) fn targets(&self) -> impl Iterator<Item = (&Target, u32)> {
         let passes = self.description.passes.iter();
-        passes.flat_map(|p| p.targets.iter().map(|target| (target, p.every)))
+        let targets = passes.flat_map(|p| p.targets.iter().map(|target| (target, p.every)));
+        targets.chain([(&self.mask, 1)])
     }
 
     /// Whether one of the things that passes read is the small texture.
@@ -213,18 +259,19 @@ impl PeelnetModel {
         around.is_some_and(|around| around.name == read)
     }
 
-    /// The binding of a target in the bind groups of passes, and in that of the resolve. 0 is the range of depths. Behind all targets are the
-    /// small texture, [its sampler](Self::sampler_binding) and [Bevy's depths](Self::depth_binding).
+    /// The binding of a target in the bind groups of passes, and in that of the resolve. The first of ours is the range of depths. Behind all
+    /// targets are the small texture, [its sampler](Self::sampler_binding) and [Bevy's depths](Self::depth_binding).
     pub(crate) fn binding(&self, read: &str) -> u32 {
-        1 + self.targets().take_while(|(t, _)| t.name != read).count() as u32
+        let before = self.targets().take_while(|(t, _)| t.name != read);
+        FIRST_BINDING + 1 + before.count() as u32
     }
 
     pub(crate) fn sampler_binding(&self) -> u32 {
-        2 + self.targets().count() as u32
+        self.depth_binding() - 1
     }
 
     pub(crate) fn depth_binding(&self) -> u32 {
-        3 + self.targets().count() as u32
+        FIRST_BINDING + 3 + self.targets().count() as u32
     }
 }
 

@@ -1,13 +1,20 @@
-//! The passes of a frame: those of the description over all weighed surfaces, and the resolve into the view.
+//! The passes of a frame: those of the description over all weighed surfaces, the resolve into the view, and the surfaces' depth.
 
-use crate::{pipelines::Setup, shader_text::GROUP, view::LearnedViews};
+use crate::{
+    group::GROUP,
+    model::{MASK, Pass},
+    pipelines::Setup,
+    view::{LearnedViews, Targets},
+};
 use bevy::{
     camera::{MainPassResolutionOverride, Viewport},
+    core_pipeline::core_3d::Transparent3d,
     log::error,
     prelude::*,
     render::{
         camera::ExtractedCamera,
         diagnostic::RecordDiagnostics,
+        render_phase::SortedRenderPhase,
         render_resource::*,
         renderer::{RenderContext, ViewQuery},
         view::{ExtractedView, ViewDepthStencilTexture, ViewTarget},
@@ -15,15 +22,17 @@ use bevy::{
 };
 use std::ops::Range;
 
+type ViewParts<'w> = (
+    &'w ExtractedCamera,
+    &'w ExtractedView,
+    &'w ViewTarget,
+    &'w ViewDepthStencilTexture,
+    Option<&'w MainPassResolutionOverride>,
+);
+
 pub(crate) fn learned_transparent_pass(
     world: &World,
-    view: ViewQuery<(
-        &ExtractedCamera,
-        &ExtractedView,
-        &ViewTarget,
-        &ViewDepthStencilTexture,
-        Option<&MainPassResolutionOverride>,
-    )>,
+    view: ViewQuery<ViewParts<'static>>,
     setup: Res<Setup>,
     views: Res<LearnedViews>,
     cache: Res<PipelineCache>,
@@ -35,83 +44,158 @@ pub(crate) fn learned_transparent_pass(
     let targets = state.and_then(|state| state.targets.as_ref());
     let pipeline = |id: Option<CachedRenderPipelineId>| cache.get_render_pipeline(id?);
     let resolve = state.and_then(|state| pipeline(state.resolve));
-    let (Some(state), Some(targets), Some(resolve), Some(size)) =
-        (state, targets, resolve, camera.physical_target_size)
+    let viewport = viewport_of(camera, resolution);
+    let (Some(state), Some(targets), Some(resolve), Some(viewport)) =
+        (state, targets, resolve, viewport)
     else {
         return;
     };
-    let viewport = Viewport::from_viewport_and_override(camera.viewport.as_ref(), resolution);
-    let viewport = viewport.unwrap_or(Viewport {
-        physical_size: size,
-        ..default()
-    });
-    let diagnostics = context.diagnostic_recorder();
-    let diagnostics = diagnostics.as_deref();
-    let cleared = |name: &String, clear: [f64; 4]| {
-        // Clear values are small integers, or the least half float.
-        let [red, green, blue, alpha] = clear.map(|value| value as f32);
-        RenderPassColorAttachment {
-            view: &targets.textures[name].default_view,
-            depth_slice: None,
-            // Samples of coded levels must not be averaged.
-            resolve_target: None,
-            ops: Operations {
-                load: LoadOp::Clear(LinearRgba::new(red, green, blue, alpha).into()),
-                store: StoreOp::Store,
-            },
-        }
-    };
-
     let description = &setup.model.description;
-    for (pass, (group, phase)) in description.passes.iter().zip(&targets.passes) {
+    for (pass, surfaces) in description.passes.iter().zip(&targets.passes) {
         let attachments = pass.targets.iter();
         let attachments: Vec<_> = attachments
-            .map(|target| Some(cleared(&target.name, target.clear)))
+            .map(|target| Some(cleared(targets, &target.name, target.clear)))
             .collect();
-        // Nothing writes depth here. It is stored because it would be lost otherwise.
-        let depth = (!pass.is_small()).then(|| depth.get_attachment(StoreOp::Store));
-        let mut drawing = context.begin_tracked_render_pass(RenderPassDescriptor {
-            label: Some("peelnet_pass"),
-            color_attachments: &attachments,
-            depth_stencil_attachment: depth,
-            ..default()
-        });
-        let span = diagnostics.pass_span(&mut drawing, format!("peelnet_{}", pass.name));
-        let origin = viewport.physical_position.as_vec2() / pass.every as f32;
-        let size = viewport.physical_size.as_vec2() / pass.every as f32;
-        let Range { start, end } = viewport.depth;
-        drawing.set_viewport(origin.x, origin.y, size.x, size.y, start, end);
-        drawing.set_bind_group(GROUP, group, &[]);
-        if let Err(problem) = phase.render(&mut drawing, world, entity) {
-            error!("peelnet pass {:?}: {problem}", pass.name);
-        }
-        span.end(&mut drawing);
-        drop(drawing);
+        let depth = (!pass.is_small()).then_some(depth);
+        draw_surfaces(
+            &mut context,
+            world,
+            entity,
+            pass,
+            surfaces,
+            &attachments,
+            depth,
+            &viewport,
+        );
         let around = description.around.as_ref().filter(|_| pass.is_small());
         if let (Some(around), Some(made_by), Some(group)) =
             (around, pipeline(state.around), &targets.around_group)
         {
-            let texture = cleared(&around.name, [0.0; 4]);
-            draw_pixels(&mut context, &around.name, texture, None, made_by, group);
+            let texture = cleared(targets, &around.name, [0.0; 4]);
+            let attachments = [Some(texture)];
+            draw_pixels(
+                &mut context,
+                &around.name,
+                &attachments,
+                None,
+                made_by,
+                group,
+            );
         }
     }
-    let output = target.get_color_attachment();
+    let mut attachments = vec![Some(target.get_color_attachment())];
+    if let Some(mask) = &targets.mask {
+        let mut samples = cleared(targets, MASK, setup.model.mask.clear);
+        let is_mean = mask.texture.id() != targets.textures[MASK].texture.id();
+        samples.resolve_target = is_mean.then_some(&*mask.default_view);
+        attachments.push(Some(samples));
+    }
     let group = &targets.resolve_group;
     draw_pixels(
         &mut context,
         "resolve",
-        output,
+        &attachments,
         Some(&viewport),
         resolve,
         group,
     );
 }
 
-/// A pass over the pixels of an attachment, or over those of a viewport.
+/// Writes the depth of the nearest weighed surface, where enough is covered.
+pub(crate) fn learned_depth_pass(
+    world: &World,
+    view: ViewQuery<ViewParts<'static>>,
+    setup: Res<Setup>,
+    views: Res<LearnedViews>,
+    mut context: RenderContext<'_, '_>,
+) {
+    let entity = view.entity();
+    let (camera, extracted, _, depth, resolution) = view.into_inner();
+    let state = views.0.get(&extracted.retained_view_entity);
+    let targets = state.and_then(|state| state.targets.as_ref());
+    let passes = targets.map(|targets| setup.model.passes().zip(&targets.passes));
+    let viewport = viewport_of(camera, resolution);
+    let (Some(mut passes), Some(viewport)) = (passes, viewport) else {
+        return;
+    };
+    if let Some((pass, surfaces)) = passes.find(|(pass, _)| pass.writes_depth) {
+        draw_surfaces(
+            &mut context,
+            world,
+            entity,
+            pass,
+            surfaces,
+            &[],
+            Some(depth),
+            &viewport,
+        );
+    }
+}
+
+/// The part of its target that a camera draws into.
+fn viewport_of(
+    camera: &ExtractedCamera,
+    resolution: Option<&MainPassResolutionOverride>,
+) -> Option<Viewport> {
+    let viewport = Viewport::from_viewport_and_override(camera.viewport.as_ref(), resolution);
+    viewport.or(camera.physical_target_size.map(|physical_size| Viewport {
+        physical_size,
+        ..default()
+    }))
+}
+
+fn cleared<'a>(targets: &'a Targets, name: &str, clear: [f64; 4]) -> RenderPassColorAttachment<'a> {
+    // Clear values are small integers, or the least half float.
+    let [red, green, blue, alpha] = clear.map(|value| value as f32);
+    RenderPassColorAttachment {
+        view: &targets.textures[name].default_view,
+        depth_slice: None,
+        // Samples of coded levels must not be averaged.
+        resolve_target: None,
+        ops: Operations {
+            load: LoadOp::Clear(LinearRgba::new(red, green, blue, alpha).into()),
+            store: StoreOp::Store,
+        },
+    }
+}
+
+/// A pass over all weighed surfaces.
+fn draw_surfaces(
+    context: &mut RenderContext<'_, '_>,
+    world: &World,
+    view: Entity,
+    pass: &Pass,
+    (group, phase): &(BindGroup, SortedRenderPhase<Transparent3d>),
+    attachments: &[Option<RenderPassColorAttachment<'_>>],
+    depth: Option<&ViewDepthStencilTexture>,
+    viewport: &Viewport,
+) {
+    let diagnostics = context.diagnostic_recorder();
+    let diagnostics = diagnostics.as_deref();
+    let mut drawing = context.begin_tracked_render_pass(RenderPassDescriptor {
+        label: Some("peelnet_pass"),
+        color_attachments: attachments,
+        // Stored where nothing writes it, too: it would be lost otherwise.
+        depth_stencil_attachment: depth.map(|depth| depth.get_attachment(StoreOp::Store)),
+        ..default()
+    });
+    let span = diagnostics.pass_span(&mut drawing, format!("peelnet_{}", pass.name));
+    let origin = viewport.physical_position.as_vec2() / pass.every as f32;
+    let size = viewport.physical_size.as_vec2() / pass.every as f32;
+    let Range { start, end } = viewport.depth;
+    drawing.set_viewport(origin.x, origin.y, size.x, size.y, start, end);
+    drawing.set_bind_group(GROUP, group, &[]);
+    if let Err(problem) = phase.render(&mut drawing, world, view) {
+        error!("peelnet pass {:?}: {problem}", pass.name);
+    }
+    span.end(&mut drawing);
+}
+
+/// A pass over the pixels of attachments, or over those of a viewport.
 fn draw_pixels(
     context: &mut RenderContext<'_, '_>,
     name: &str,
-    attachment: RenderPassColorAttachment<'_>,
+    attachments: &[Option<RenderPassColorAttachment<'_>>],
     viewport: Option<&Viewport>,
     pipeline: &RenderPipeline,
     group: &BindGroup,
@@ -120,7 +204,7 @@ fn draw_pixels(
     let diagnostics = diagnostics.as_deref();
     let mut drawing = context.begin_tracked_render_pass(RenderPassDescriptor {
         label: Some("peelnet_pass"),
-        color_attachments: &[Some(attachment)],
+        color_attachments: attachments,
         ..default()
     });
     let span = diagnostics.pass_span(&mut drawing, format!("peelnet_{name}"));

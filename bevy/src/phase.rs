@@ -6,7 +6,7 @@
 //! weighed surfaces.
 
 use crate::{
-    DepthRange, LearnedTransparency,
+    CoverageMask, DepthRange, LearnedTransparency,
     depths::{Boxes, clipped, depths_of_boxes},
     device::{Refusals, refusal_of},
     error::{Gravity, PeelnetMessages},
@@ -16,7 +16,10 @@ use crate::{
 use bevy::{
     core_pipeline::{core_3d::Transparent3d, oit::OrderIndependentTransparencySettings},
     material::labels::DrawFunctionId,
-    pbr::{DrawMaterial, PreparedMaterial, RenderMaterialInstances},
+    pbr::{
+        DrawMaterial, DrawMesh, MATERIAL_BIND_GROUP_INDEX, PreparedMaterial,
+        RenderMaterialInstances, SetMaterialBindGroup, SetMeshBindGroup, SetMeshViewBindGroup,
+    },
     platform::collections::HashSet,
     prelude::*,
     render::{
@@ -31,6 +34,15 @@ use bevy::{
 
 /// Marks items that are weighed, between sorting and batching. No such function exists: Bevy never sees one.
 pub(crate) const WEIGHED: DrawFunctionId = DrawFunctionId(u32::MAX);
+
+/// Draws a weighed item as Bevy draws materials, but for the bind group that is the pass's own ([`crate::group`]).
+pub(crate) type DrawWeighed = (
+    SetItemPipeline,
+    SetMeshViewBindGroup<0>,
+    SetMeshBindGroup<2>,
+    SetMaterialBindGroup<MATERIAL_BIND_GROUP_INDEX>,
+    DrawMesh,
+);
 
 /// Whether weights apply to the item's material: it absorbs what is behind it. Sums of light (`AlphaMode::Add`) and filters
 /// (`AlphaMode::Multiply`) have no order or no coverage.
@@ -76,6 +88,7 @@ pub(crate) fn mark_items(
 ) {
     // Meshes that are drawn as Bevy draws materials.
     let draw_material = draw_functions.read().get_id::<DrawMaterial>();
+    let limits = device.limits();
     let mut live: HashSet<RetainedViewEntity> = HashSet::default();
     for (view, settings, msaa, mut camera_3d, has_bevys) in &mut cameras {
         let id = view.retained_view_entity;
@@ -101,10 +114,15 @@ pub(crate) fn mark_items(
             continue;
         };
         live.insert(id);
-        let format = view.target_format;
         let mut pipeline = |key| over_pixels.specialize(&cache, &setup, key);
         let state = views.0.entry(id).or_default();
-        state.resolve = Some(pipeline(OverPixels::Resolve { format, samples }));
+        state.writes_depth = settings.depth_threshold.is_some();
+        state.has_mask = settings.mask || state.writes_depth;
+        state.resolve = Some(pipeline(OverPixels::Resolve {
+            format: view.target_format,
+            samples,
+            mask: state.has_mask,
+        }));
         if setup.model.description.around.is_some() {
             state.around = Some(pipeline(OverPixels::Around));
             // One pixel in many looks at the depths of opaque surfaces itself.
@@ -118,7 +136,8 @@ pub(crate) fn mark_items(
             if Some(item.draw_function) != draw_material || !absorbs(item, &instances, &prepared) {
                 return false;
             }
-            match pipelines.find(item.pipeline, &cache, &setup, &hooked) {
+            let (base, writes_depth) = (item.pipeline, state.writes_depth);
+            match pipelines.find(base, writes_depth, &cache, &setup, &hooked, &limits) {
                 Found::Ready => true,
                 Found::Waiting => false,
                 Found::NoHook => {
@@ -126,6 +145,13 @@ pub(crate) fn mark_items(
                         "the material of entity {} is not weighed, and Bevy draws it over all that are: its fragment shader does not import \
                          bevy_peelnet::draw",
                         item.main_entity().id()
+                    );
+                    messages.report(Gravity::Warning, text);
+                    false
+                }
+                Found::Excess(excess) => {
+                    let text = format!(
+                        "some materials are not weighed, and Bevy draws them over all that are: their shaders would need {excess}"
                     );
                     messages.report(Gravity::Warning, text);
                     false
@@ -156,13 +182,16 @@ pub(crate) fn mark_items(
             );
             messages.report(Gravity::Info, text);
         }
-        state.depths = depths_of(view, settings, weighed, &boxes, &messages);
+        let depths = depths_of(view, settings, weighed, &boxes, &messages);
+        state.depths = depths.with_w(settings.depth_threshold.unwrap_or_default());
     }
     views.0.retain(|id, _| live.contains(id));
 }
 
-/// Gives all items back.
+/// Gives all items back. Masks are of one frame.
 pub(crate) fn return_items(
+    mut commands: Commands,
+    masks: Query<Entity, With<CoverageMask>>,
     mut transparent: ResMut<ViewSortedRenderPhases<Transparent3d>>,
     mut views: ResMut<LearnedViews>,
 ) {
@@ -171,6 +200,9 @@ pub(crate) fn return_items(
         if let Some(into) = transparent.get_mut(id) {
             into.items.extend(items);
         }
+    }
+    for view in &masks {
+        commands.entity(view).remove::<CoverageMask>();
     }
 }
 

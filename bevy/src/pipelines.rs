@@ -1,25 +1,20 @@
 //! Pipelines of the passes, made from those that Bevy makes for the same mesh and material.
 //!
 //! A transparent item of Bevy's has a pipeline, and with it a descriptor: vertex shader, bind groups, culling, definitions. The same descriptor with
-//! another fragment shader, other targets and one bind group more is the item's pipeline in a pass of ours. So whatever Bevy or a material
-//! specialises (skins, morph targets, bindless materials, fog) holds here too.
+//! another fragment shader, other targets and more bindings in one of its groups is the item's pipeline in a pass of ours. So whatever Bevy or a
+//! material specialises (skins, morph targets, bindless materials, fog) holds here too.
 
 use crate::{
-    model::{Around, Blend, Description, Pass, PeelnetModel, Target},
-    shader_text::{GROUP, pass_define},
+    group::{GROUP, Reads, excess},
+    model::{Blend, Description, Pass, PeelnetModel, Target},
+    shader_text::pass_define,
 };
 use bevy::{
     asset::AssetId,
     core_pipeline::FullscreenShader,
     platform::collections::{HashMap, HashSet},
     prelude::*,
-    render::render_resource::{
-        binding_types::{
-            sampler, texture_2d, texture_2d_multisampled, texture_depth_2d,
-            texture_depth_2d_multisampled, uniform_buffer,
-        },
-        *,
-    },
+    render::render_resource::*,
     shader::Shader,
 };
 
@@ -49,6 +44,8 @@ pub(crate) enum Found {
     Waiting,
     /// The material's shader does not import `bevy_peelnet::draw`.
     NoHook,
+    /// More is needed than the device allows.
+    Excess(String),
     Ready,
 }
 
@@ -59,27 +56,34 @@ pub(crate) struct LearnedPipelines(
 );
 
 impl LearnedPipelines {
-    /// Asks for the pipelines of all passes, and says whether they can be drawn with.
+    /// Asks for the pipelines of all passes, and says whether they can be drawn with. That of depth is drawn with once it is there.
     pub fn find(
         &mut self,
         base: CachedRenderPipelineId,
+        writes_depth: bool,
         cache: &PipelineCache,
         setup: &Setup,
         hooked: &HookedShaders,
+        limits: &WgpuLimits,
     ) -> Found {
-        if !self.0.contains_key(&base) {
+        let needed = setup.model.description.passes.len();
+        let wanted = needed + usize::from(writes_depth);
+        let known = self.0.entry(base).or_default();
+        if known.len() < wanted {
             // Pipelines that were asked for in this frame are not in the list yet.
             let Some(cached) = cache.pipelines().nth(base.id()) else {
                 return Found::Waiting;
             };
-            let Some(all) = learned_descriptors(&cached.descriptor, setup, hooked) else {
-                return Found::NoHook;
-            };
-            let queued = all.into_iter().map(|d| cache.queue_render_pipeline(d));
-            self.0.insert(base, queued.collect());
+            match learned_descriptors(&cached.descriptor, setup, hooked, limits) {
+                Ok(all) => {
+                    let new = all.into_iter().take(wanted).skip(known.len());
+                    known.extend(new.map(|d| cache.queue_render_pipeline(d)));
+                }
+                Err(found) => return found,
+            }
         }
-        let is_ready = |&id: &CachedRenderPipelineId| cache.get_render_pipeline(id).is_some();
-        if self.0[&base].iter().all(is_ready) {
+        let mut needed = known.iter().take(needed);
+        if needed.all(|id| cache.get_render_pipeline(*id).is_some()) {
             Found::Ready
         } else {
             Found::Waiting
@@ -87,32 +91,31 @@ impl LearnedPipelines {
     }
 }
 
+/// The pipelines of all passes, or why there are none.
 fn learned_descriptors(
     base: &PipelineDescriptor,
     setup: &Setup,
     hooked: &HookedShaders,
-) -> Option<Vec<RenderPipelineDescriptor>> {
+    limits: &WgpuLimits,
+) -> Result<Vec<RenderPipelineDescriptor>, Found> {
     let PipelineDescriptor::RenderPipelineDescriptor(base) = base else {
-        return None;
+        return Err(Found::NoHook);
     };
-    let shader = &base.fragment.as_ref()?.shader;
-    let shader = if shader.id() == setup.bevy_standard.id() {
-        &setup.standard
-    } else if hooked.0.contains(&shader.id()) {
-        shader
-    } else {
-        return None;
+    let shader = base.fragment.as_ref().map(|fragment| &fragment.shader);
+    let shader = match shader {
+        Some(shader) if shader.id() == setup.bevy_standard.id() => &setup.standard,
+        Some(shader) if hooked.0.contains(&shader.id()) => shader,
+        _ => return Err(Found::NoHook),
     };
-    // The group of the statistics must be free.
-    if base.layout.len() != GROUP {
-        return None;
-    }
     let descriptor = |(number, pass): (usize, &Pass)| {
         let mut descriptor = RenderPipelineDescriptor::clone(base);
         descriptor.label = Some(format!("peelnet_{}_pipeline", pass.name).into());
         let samples = descriptor.multisample.count;
-        let reads = Reads::of_pass(pass, samples);
-        descriptor.layout.push(reads.layout(&setup.model));
+        let group = &mut descriptor.layout[GROUP];
+        *group = Reads::of_pass(pass, samples).layout(&setup.model, &group.entries);
+        if let Some(excess) = excess(&descriptor.layout, limits) {
+            return Err(Found::Excess(excess));
+        }
         descriptor.multisample = MultisampleState {
             count: if pass.is_small() { 1 } else { samples },
             ..default()
@@ -120,9 +123,9 @@ fn learned_descriptors(
         if pass.is_small() {
             descriptor.depth_stencil = None;
         } else if let Some(depth) = &mut descriptor.depth_stencil {
-            depth.depth_write_enabled = Some(false);
+            depth.depth_write_enabled = Some(pass.writes_depth);
         }
-        let fragment = descriptor.fragment.as_mut()?;
+        let fragment = descriptor.fragment.get_or_insert_default();
         fragment.shader = shader.clone();
         let targets = pass.targets.iter();
         fragment.targets = targets.map(|target| Some(state_of(target))).collect();
@@ -136,10 +139,10 @@ fn learned_descriptors(
                 defines.push(define.into());
             }
         }
-        Some(descriptor)
+        Ok(descriptor)
     };
-    let passes = setup.model.description.passes.iter();
-    passes.enumerate().map(descriptor).collect()
+    let passes = setup.model.passes().enumerate();
+    passes.map(descriptor).collect()
 }
 
 /// A pass over pixels.
@@ -147,8 +150,12 @@ fn learned_descriptors(
 pub(crate) enum OverPixels {
     /// Makes the small texture.
     Around,
-    /// Composites into a view's texture.
-    Resolve { format: TextureFormat, samples: u32 },
+    /// Composites into a view's texture, and into a mask.
+    Resolve {
+        format: TextureFormat,
+        samples: u32,
+        mask: bool,
+    },
 }
 
 impl SpecializedRenderPipeline for Setup {
@@ -160,40 +167,58 @@ impl SpecializedRenderPipeline for Setup {
             resolve_reads,
             ..
         } = &self.model.description;
-        // The resolve's colour is multiplied by its coverage.
-        let premultiplied = Some(BlendState::PREMULTIPLIED_ALPHA_BLENDING);
-        let (label, shader, reads, blend, format, samples) = match (key, around) {
+        let target = |format, blend| ColorTargetState {
+            format,
+            blend,
+            write_mask: ColorWrites::ALL,
+        };
+        let (label, shader, reads, targets, samples, defines) = match (key, around) {
             (OverPixels::Around, Some(around)) => (
                 "peelnet_around_pipeline",
                 &self.around,
                 Reads::of_around(around),
-                None,
-                around.format,
+                vec![target(around.format, None)],
                 1,
+                vec![],
             ),
-            (OverPixels::Resolve { format, samples }, _) => (
-                "peelnet_resolve_pipeline",
-                &self.resolve,
-                Reads::new(resolve_reads, samples),
-                premultiplied,
-                format,
-                samples,
-            ),
+            (
+                OverPixels::Resolve {
+                    format,
+                    samples,
+                    mask,
+                },
+                _,
+            ) => {
+                // The colour is multiplied by its coverage.
+                let premultiplied = Some(BlendState::PREMULTIPLIED_ALPHA_BLENDING);
+                let mut targets = vec![target(format, premultiplied)];
+                let mut defines = vec![];
+                if samples > 1 {
+                    defines.push("MULTISAMPLED".into());
+                }
+                if mask {
+                    targets.push(target(self.model.mask.format, None));
+                    defines.push("PEELNET_MASK".into());
+                }
+                (
+                    "peelnet_resolve_pipeline",
+                    &self.resolve,
+                    Reads::new(resolve_reads, samples),
+                    targets,
+                    samples,
+                    defines,
+                )
+            }
             _ => unreachable!("asked for where a network reads one alone"),
         };
-        let multisampled = (samples > 1).then(|| "MULTISAMPLED".into());
         RenderPipelineDescriptor {
             label: Some(label.into()),
-            layout: vec![reads.layout(&self.model)],
+            layout: vec![reads.layout(&self.model, &[])],
             vertex: self.fullscreen.to_vertex_state(),
             fragment: Some(FragmentState {
                 shader: shader.clone(),
-                shader_defs: multisampled.into_iter().collect(),
-                targets: vec![Some(ColorTargetState {
-                    format,
-                    blend,
-                    write_mask: ColorWrites::ALL,
-                })],
+                shader_defs: defines,
+                targets: targets.into_iter().map(Some).collect(),
                 ..default()
             }),
             multisample: MultisampleState {
@@ -202,71 +227,6 @@ impl SpecializedRenderPipeline for Setup {
             },
             ..default()
         }
-    }
-}
-
-/// What a pass reads beside the range of depths: one bind group.
-pub(crate) struct Reads<'a> {
-    /// Targets of earlier passes, or the small texture.
-    pub names: Vec<&'a String>,
-    /// Of the targets.
-    samples: u32,
-    /// Of the depths of opaque surfaces, where they are read.
-    pub depth_samples: Option<u32>,
-}
-
-impl<'a> Reads<'a> {
-    pub fn new(names: impl IntoIterator<Item = &'a String>, samples: u32) -> Self {
-        Self {
-            names: names.into_iter().collect(),
-            samples,
-            depth_samples: None,
-        }
-    }
-
-    /// Of a pass over surfaces, in a view of so many samples.
-    pub fn of_pass(pass: &'a Pass, samples: u32) -> Self {
-        Self {
-            depth_samples: pass.is_small().then_some(samples),
-            ..Self::new(&pass.reads, samples)
-        }
-    }
-
-    /// Of the pass that makes the small texture.
-    pub fn of_around(around: &'a Around) -> Self {
-        Self::new(around.pass.targets.iter().map(|target| &target.name), 1)
-    }
-
-    pub fn layout(&self, model: &PeelnetModel) -> BindGroupLayoutDescriptor {
-        let texture = |samples, filterable| {
-            let kind = TextureSampleType::Float { filterable };
-            if samples > 1 {
-                texture_2d_multisampled(kind)
-            } else {
-                texture_2d(kind)
-            }
-        };
-        let mut entries = vec![(0, uniform_buffer::<Vec4>(false))];
-        for read in &self.names {
-            let is_around = model.is_around(read);
-            let samples = if is_around { 1 } else { self.samples };
-            entries.push((model.binding(read), texture(samples, is_around)));
-            if is_around {
-                let bilinear = sampler(SamplerBindingType::Filtering);
-                entries.push((model.sampler_binding(), bilinear));
-            }
-        }
-        entries.extend(self.depth_samples.map(|samples| {
-            let depth = if samples > 1 {
-                texture_depth_2d_multisampled()
-            } else {
-                texture_depth_2d()
-            };
-            (model.depth_binding(), depth)
-        }));
-        let entries = entries.into_iter();
-        let entries = entries.map(|(binding, ty)| ty.build(binding, ShaderStages::FRAGMENT));
-        BindGroupLayoutDescriptor::new("peelnet_layout", &entries.collect::<Vec<_>>())
     }
 }
 

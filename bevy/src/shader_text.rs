@@ -3,11 +3,11 @@
 //! `draw.wesl` is the module that materials import. One function of it serves all passes: `PEELNET_PASS_<number>` says which one is compiled. The
 //! names of targets, the statements and the expressions are those of `model.json`.
 
-use crate::model::{Around, PeelnetModel, Target};
+use crate::{
+    group::{FIRST_BINDING, GROUP},
+    model::{Around, PeelnetModel, Target},
+};
 use std::fmt::Write as _;
-
-/// The bind group of the statistics: the one after Bevy's view, light probes, meshes and materials.
-pub(crate) const GROUP: usize = 4;
 
 /// The definition that says which pass a shader is compiled for.
 pub(crate) fn pass_define(pass: usize) -> String {
@@ -90,20 +90,26 @@ fn reads(model: &PeelnetModel, names: &[String]) -> String {
 
 /// The module `bevy_peelnet::draw`.
 pub(crate) fn draw_text(model: &PeelnetModel) -> String {
-    let passes = &model.description.passes;
     let mut text = format!(
         "import bevy_pbr::render::view_transformations::depth_ndc_to_view_z;
 
 {}
-// Near and far of the transparent surfaces in view, and the distance that both are counted from.
-@group({GROUP}) @binding(0) var<uniform> peelnet_depths: vec4f;
+// Near and far of the transparent surfaces in view, the distance that both are counted from, and the coverage from which depth is written.
+@group({GROUP}) @binding({FIRST_BINDING}) var<storage> peelnet_depths: vec4f;
 
 // What a material's fragment shader returns in the pass that it is compiled for.
 struct PeelnetOutput {{
 ",
         network_text(model, GROUP)
     );
-    for (number, pass) in passes.iter().enumerate() {
+    for (number, pass) in model.passes().enumerate() {
+        if pass.writes_depth {
+            let _ = writeln!(
+                text,
+                "    @if({})\n    @builtin(frag_depth) depth: f32,",
+                pass_define(number)
+            );
+        }
         for (location, target) in pass.targets.iter().enumerate() {
             let (define, name) = (pass_define(number), &target.name);
             let (kind, _) = type_of(target);
@@ -131,7 +137,7 @@ fn peelnet_output(position: vec4f, sample_index: u32, color: vec4f) -> PeelnetOu
     var peelnet_out: PeelnetOutput;
 ",
     );
-    for (number, pass) in passes.iter().enumerate() {
+    for (number, pass) in model.passes().enumerate() {
         let _ = writeln!(text, "@if({}) {{", pass_define(number));
         if pass.is_small() {
             let every = pass.every;
@@ -151,6 +157,9 @@ fn peelnet_output(position: vec4f, sample_index: u32, color: vec4f) -> PeelnetOu
         }
         for target in &pass.targets {
             let _ = writeln!(text, "    peelnet_out.{} = {};", target.name, target.write);
+        }
+        if pass.writes_depth {
+            text.push_str("    peelnet_out.depth = position.z;\n");
         }
         text.push_str("}\n");
     }
@@ -190,22 +199,33 @@ fn peelnet_texel(@builtin(position) position: vec4f) -> @location(0) vec4f {{
     )
 }
 
-/// The full-screen shader that composites a pixel's sums, or a sample's. Its answer is premultiplied by coverage, for blending over the opaque scene.
+/// The full-screen shader that composites a pixel's sums, or a sample's. Its colour is premultiplied by coverage, for blending over the opaque scene;
+/// coverage by itself is the mask.
 pub(crate) fn resolve_text(model: &PeelnetModel) -> String {
     format!(
         "{}
+struct PeelnetPixel {{
+    @location(0) color: vec4f,
+@if(PEELNET_MASK)
+    @location(1) mask: f32,
+}}
+
 @fragment
 fn peelnet_resolve_pixel(
     @builtin(position) position: vec4f,
 @if(MULTISAMPLED)
     @builtin(sample_index) sample_index: u32,
-) -> @location(0) vec4f {{
+) -> PeelnetPixel {{
 @if(!MULTISAMPLED)
     let sample_index = 0u;
     let peelnet_at = vec2i(position.xy);
     let peelnet_sample = i32(sample_index);
 {}    let background = vec3f(0.0);
-    return {};
+    var pixel: PeelnetPixel;
+    pixel.color = {};
+@if(PEELNET_MASK)
+    pixel.mask = pixel.color.a;
+    return pixel;
 }}
 ",
         network_text(model, 0),

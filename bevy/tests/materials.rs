@@ -13,7 +13,7 @@ use bevy::{
 };
 use bevy_peelnet::{Gravity, PeelnetPlugin};
 use support::{
-    cards::{self, Card, spawn_of},
+    cards::{self, spawn_of},
     headless::Headless,
 };
 
@@ -99,14 +99,6 @@ fn application(msaa: Msaa) -> Headless {
     headless
 }
 
-/// Cards that face the camera: culled materials show their fronts.
-fn facing() -> [Card; 2] {
-    let [mut first, mut second] = <[Card; 2]>::try_from(cards::two()).expect("two cards");
-    first.color.alpha = 0.6;
-    second.color.alpha = 0.7;
-    [first, second]
-}
-
 /// Two cards in these materials are exact but for this, and nothing is reported.
 fn check<M: Material, N: Material>(
     msaa: Msaa,
@@ -114,7 +106,7 @@ fn check<M: Material, N: Material>(
     near: impl Fn(LinearRgba) -> M,
     far: impl Fn(LinearRgba) -> N,
 ) {
-    let scene = facing();
+    let scene = cards::facing();
     let mut headless = application(msaa);
     spawn_of(&mut headless.app, &scene[0], near(scene[0].color));
     spawn_of(&mut headless.app, &scene[1], far(scene[1].color));
@@ -142,7 +134,7 @@ fn materials_with_the_hook_and_extensions_are_weighed_like_bevys() {
 
 #[test]
 fn a_material_without_the_hook_is_drawn_by_bevy_and_said_once() {
-    let scene = facing();
+    let scene = cards::facing();
     let [near, far] = &scene;
     let mut headless = application(Msaa::Off);
     // In front, where Bevy's drawing after the weighed surfaces is right.
@@ -153,21 +145,10 @@ fn a_material_without_the_hook_is_drawn_by_bevy_and_said_once() {
     headless.assert_said(Gravity::Warning, &says);
 }
 
-/// Bevy sorts two cards that face the camera rightly, so that both techniques must give one picture. Returns it.
-fn same_when_sorted(mut headless: Headless) -> Vec<u8> {
-    let weighed = headless.picture();
-    headless.sort();
-    let sorted = headless.picture();
-    let apart = weighed.iter().zip(&sorted).map(|(a, b)| a.abs_diff(*b));
-    let most = apart.max();
-    assert!(most <= Some(1), "{most:?}");
-    sorted
-}
-
 #[test]
 fn light_falls_on_weighed_surfaces_as_on_sorted_ones() {
     let mut headless = application(Msaa::Off);
-    for card in facing() {
+    for card in cards::facing() {
         let lit = StandardMaterial {
             unlit: false,
             ..cards::material(card.color)
@@ -176,7 +157,7 @@ fn light_falls_on_weighed_surfaces_as_on_sorted_ones() {
     }
     let light = (PointLight::default(), Transform::from_xyz(1.0, 1.0, 3.0));
     headless.app.world_mut().spawn(light);
-    let sorted = same_when_sorted(headless);
+    let sorted = headless.same_when_sorted();
     // And the light is seen: the near card is not of one colour.
     let row = &sorted[(4 * SIZE.x * SIZE.y / 2) as usize..][..(4 * SIZE.x) as usize];
     let reds: std::collections::HashSet<u8> = row.chunks(4).map(|pixel| pixel[0]).collect();
@@ -185,7 +166,7 @@ fn light_falls_on_weighed_surfaces_as_on_sorted_ones() {
 
 #[test]
 fn sums_of_light_stay_with_bevy() {
-    let [near, far] = facing();
+    let [near, far] = cards::facing();
     let mut headless = application(Msaa::Off);
     let added = StandardMaterial {
         alpha_mode: AlphaMode::Add,
@@ -193,5 +174,5 @@ fn sums_of_light_stay_with_bevy() {
     };
     spawn_of(&mut headless.app, &near, added);
     spawn_of(&mut headless.app, &far, cards::material(far.color));
-    same_when_sorted(headless);
+    headless.same_when_sorted();
 }

@@ -115,6 +115,7 @@ fn surfaces_behind_an_opaque_wall_change_nothing() {
             let (near, far) = (1.0, 20.0);
             headless.camera().insert(LearnedTransparency {
                 depth_range: DepthRange::Fixed { near, far },
+                ..default()
             });
             headless.picture()
         });
@@ -181,6 +182,7 @@ fn the_range_of_depths_can_be_set_and_is_tight_by_itself() {
     let (near, far) = (0.1, 1000.0);
     headless.camera().insert(LearnedTransparency {
         depth_range: DepthRange::Fixed { near, far },
+        ..default()
     });
     let wide = headless.errors(&scene);
     println!("boxes: {boxes:?}; 0.1 .. 1000: {wide:?}");

@@ -32,6 +32,14 @@ pub fn two() -> Vec<Card> {
     ]
 }
 
+/// Two cards that face the camera: culled materials show their fronts.
+pub fn facing() -> [Card; 2] {
+    let [mut first, mut second] = <[Card; 2]>::try_from(two()).expect("two cards");
+    first.color.alpha = 0.6;
+    second.color.alpha = 0.7;
+    [first, second]
+}
+
 /// Two cards that cut each other: no order of the two is right.
 pub fn crossing() -> Vec<Card> {
     let turned = |angle, color| {

@@ -128,6 +128,17 @@ impl Headless {
         assert!(errors.max <= most, "{errors:?}");
     }
 
+    /// Bevy sorts [two cards that face the camera](cards::facing) rightly, so that both techniques must give one picture. Returns it.
+    pub fn same_when_sorted(mut self) -> Vec<u8> {
+        let weighed = self.picture();
+        self.sort();
+        let sorted = self.picture();
+        let apart = weighed.iter().zip(&sorted).map(|(a, b)| a.abs_diff(*b));
+        let most = apart.max();
+        assert!(most <= Some(1), "{most:?}");
+        sorted
+    }
+
     pub fn messages(&self) -> Vec<(Gravity, String)> {
         self.app.world().resource::<PeelnetMessages>().all()
     }
