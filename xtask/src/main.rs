@@ -32,8 +32,8 @@ cargo xtask <command>
   measure MACHINE [STEP…]
                   every result in docs/results/MACHINE, or those of some steps, measured on this machine (up to 40 minutes); with a program
                   that was built elsewhere, PEELNET_BINARY, neither a compiler nor a network is needed
-  bevy            the Bevy plugin in bevy/: lints, tests, and its comparison against the exact image, into out/bevy (not part of test: Bevy takes
-                  minutes to compile)
+  bevy            the Bevy plugin in bevy/: lints, tests, its comparison against the exact image, into out/bevy, and a page in Chromium (not part of
+                  test: Bevy takes minutes to compile, for pages once more; needs the Rust target wasm32-unknown-unknown, Node.js 20 and npm)
   wasm            check the crates that run in a browser for wasm32
   web             build the viewer's page into out/web, and the example for three.js into out/web/three (needs the Rust target wasm32-unknown-unknown,
                   Node.js 20 and npm)

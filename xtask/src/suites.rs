@@ -47,7 +47,7 @@ pub fn find(name: &str) -> Option<fn() -> Outcome> {
     suite.map(|(_, run)| *run)
 }
 
-/// The Bevy plugin, a workspace of its own: its lints and tests, and its comparison against the exact image.
+/// The Bevy plugin, a workspace of its own: its lints and tests, its comparison against the exact image, and a page in Chromium.
 fn bevy() -> Outcome {
     ensure_driver()?;
     // The crate declares the compiler that Bevy asks for. Older ones compile it, down to that of this workspace.
@@ -57,7 +57,12 @@ fn bevy() -> Outcome {
     run(&format!("cargo test {BEVY} --no-fail-fast"))?;
     run(&format!(
         "cargo run {BEVY} --example compare -- --out out/bevy"
-    ))
+    ))?;
+    // In a browser, which the package for three.js starts.
+    ensure_browser()?;
+    run("npm --prefix packages/three ci --no-audit --no-fund")?;
+    let folder = web::bevy_page()?;
+    start(command("node --test bevy/web/page.test.mjs").env("PEELNET_PAGE", folder))
 }
 
 /// Compiles what a page in a browser needs, without linking it: peeling and training wait and write files.

@@ -1,14 +1,49 @@
 //! The viewer's page: `cargo xtask web`.
 
 use crate::{Outcome, captured, command, root, run, start, target_folder};
-use std::{env, fs, path::Path};
+use std::{
+    env, fs,
+    path::{Path, PathBuf},
+};
 
 pub const TARGET: &str = "wasm32-unknown-unknown";
 /// What a page is to weigh on the line at most, bytes.
 const MOST: u64 = 3_000_000;
 
 pub fn web() -> Outcome {
-    let mut build = command("cargo rustc --package peelnet_view --lib --crate-type cdylib");
+    compile("cargo rustc --package peelnet_view --lib --crate-type cdylib")?;
+    let wasm = target_folder().join(TARGET).join("web/peelnet_view.wasm");
+    // The file is packed, too.
+    let folder = glue(&wasm, "out/web", "")?;
+    let index = root().join("crates/peelnet_view/web/index.html");
+    fs::copy(&index, folder.join("index.html")).map_err(|e| format!("{}: {e}", index.display()))?;
+    sizes(&folder)?;
+    // The example of the package for three.js, a page of its own.
+    run("npm --prefix packages/three ci --no-audit --no-fund")?;
+    let mut example = command("npm --prefix packages/three run example --");
+    start(example.arg(folder.join("three")))
+}
+
+/// The page of the Bevy plugin, with `index.html`, in a folder.
+pub fn bevy_page() -> Result<PathBuf, String> {
+    compile("cargo build --manifest-path bevy/Cargo.toml --ignore-rust-version --example page")?;
+    let target =
+        env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("bevy/target"), Into::into);
+    let wasm = target.join(TARGET).join("web/examples/page.wasm");
+    let folder = glue(&wasm, "out/bevy-page", "--unpacked")?;
+    // Five minutes less than what packs for a network.
+    run(&format!(
+        "gzip -9f {}",
+        folder.join("page_bg.wasm").display()
+    ))?;
+    let index = root().join("bevy/web/index.html");
+    fs::copy(&index, folder.join("index.html")).map_err(|e| format!("{}: {e}", index.display()))?;
+    Ok(folder)
+}
+
+/// Compiles for pages, with the profile `web`.
+fn compile(line: &str) -> Outcome {
+    let mut build = command(line);
     build.args(["--profile", "web", "--target", TARGET]);
     let line = format!("rustc --print target-libdir --target {TARGET}");
     let libraries = captured(&mut command(&line))?;
@@ -22,22 +57,17 @@ pub fn web() -> Outcome {
         // A compiler without the target's library, and with its source: it is compiled along, which needs unstable flags.
         build.arg("-Zbuild-std=std,panic_abort");
     }
-    start(&mut build)?;
-    let folder = root().join("out/web");
-    fs::create_dir_all(&folder).map_err(|e| format!("{}: {e}", folder.display()))?;
-    // The JavaScript beside the wasm file, which is packed, by a program of ours. Its profile and its lock file are its own.
-    let target = target_folder();
+    start(&mut build)
+}
+
+/// A wasm file and the JavaScript beside it, by a program of ours, whose profile and lock file are its own.
+fn glue(wasm: &Path, folder: &str, more: &str) -> Result<PathBuf, String> {
+    let into = root().join(folder);
+    fs::create_dir_all(&into).map_err(|e| format!("{}: {e}", into.display()))?;
     let mut glue = command("cargo run --quiet --manifest-path xtask/glue/Cargo.toml --target-dir");
-    glue.arg(target.join("glue")).arg("--");
-    glue.arg(target.join(TARGET).join("web/peelnet_view.wasm"));
-    start(glue.arg("out/web"))?;
-    let index = root().join("crates/peelnet_view/web/index.html");
-    fs::copy(&index, folder.join("index.html")).map_err(|e| format!("{}: {e}", index.display()))?;
-    sizes(&folder)?;
-    // The example of the package for three.js, a page of its own.
-    run("npm --prefix packages/three ci --no-audit --no-fund")?;
-    let mut example = command("npm --prefix packages/three run example --");
-    start(example.arg(folder.join("three")))
+    glue.arg(target_folder().join("glue")).arg("--").arg(wasm);
+    start(glue.arg(folder).args(more.split_whitespace()))?;
+    Ok(into)
 }
 
 fn sizes(folder: &Path) -> Outcome {

@@ -1,4 +1,4 @@
-//! `glue FILE.wasm FOLDER`: a wasm file for the web as NAME_bg.wasm.gz, and the JavaScript that loads it.
+//! `glue FILE.wasm FOLDER [--unpacked]`: a wasm file for the web as NAME_bg.wasm.gz, or unpacked as NAME_bg.wasm, and the JavaScript that loads it.
 
 use std::{
     env,
@@ -10,8 +10,10 @@ use std::{
 
 fn main() -> Result<(), Box<dyn Error>> {
     let paths: Vec<_> = env::args_os().skip(1).collect();
-    let [wasm, folder] = paths.as_slice() else {
-        return Err("usage: glue FILE.wasm FOLDER".into());
+    let (wasm, folder, is_packed) = match paths.as_slice() {
+        [wasm, folder] => (wasm, folder, true),
+        [wasm, folder, flag] if flag == "--unpacked" => (wasm, folder, false),
+        _ => return Err("usage: glue FILE.wasm FOLDER [--unpacked]".into()),
     };
     let (wasm, folder) = (Path::new(wasm), Path::new(folder));
     wasm_bindgen_cli_support::Bindgen::new()
@@ -23,6 +25,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         .remove_producers_section(true)
         .generate(folder)
         .map_err(|e| format!("{e:?}"))?;
+    if !is_packed {
+        return Ok(());
+    }
     let name = wasm.file_stem().unwrap_or_default().to_string_lossy();
     let plain = folder.join(format!("{name}_bg.wasm"));
     let packed = BufWriter::new(File::create(plain.with_extension("wasm.gz"))?);
