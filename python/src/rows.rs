@@ -20,7 +20,7 @@ use peelnet::{
     dataset::{self, Column, ColumnKind, ColumnValues, FragmentBatch},
     peel::{self, ExtractOptions, ExtractReport, PeelError, Progress, items},
 };
-use peelnet_core::files::{counted, thousands};
+use peelnet_core::files::{counted, shown, thousands};
 use pyo3::{
     prelude::*,
     types::{PyCapsule, PyDict},
@@ -180,7 +180,8 @@ impl Dataset {
         self.dataset.manifest().pixels
     }
 
-    /// The manifest, as its JSON says it.
+    /// The manifest, as its JSON says it. Its "statistics" are those of all rows, by column: name, min, max, mean, deviation (in the
+    /// column's unit), and a histogram: edges and counts.
     #[getter]
     fn manifest<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         crate::json::to_python(py, self.dataset.manifest())
@@ -354,6 +355,7 @@ pub fn extract_rows<'py>(
             if !report.manifest.is_whole() {
                 return Ok(py.None().into_bound(py));
             }
+            warn_of_foreign_card(py, &options.out)?;
             let dataset = Dataset::from_file(py, options.out)?;
             Ok(Bound::new(py, dataset)?.into_any())
         }
@@ -370,7 +372,17 @@ pub fn extract_rows<'py>(
 #[pyfunction]
 pub fn seal(py: Python<'_>, path: PathBuf) -> PyResult<Dataset> {
     py.detach(|| dataset::seal(&path)).map_err(raised)?;
+    warn_of_foreign_card(py, &path)?;
     Dataset::from_file(py, path)
+}
+
+/// Warns as the command line does.
+fn warn_of_foreign_card(py: Python<'_>, path: &Path) -> PyResult<()> {
+    let foreign = py.detach(|| dataset::foreign_card(path));
+    for file in foreign.map_err(raised)? {
+        warn(py, &format!("{} {}", shown(&file), dataset::FOREIGN_CARD))?;
+    }
+    Ok(())
 }
 
 impl FromFile for Dataset {

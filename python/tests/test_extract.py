@@ -116,7 +116,8 @@ def test_pyarrow_reads_the_folder(folder, rows):
     import pyarrow.compute
     import pyarrow.dataset
 
-    table = pyarrow.dataset.dataset(folder).to_table()
+    # A folder alone would be read with its README.md.
+    table = pyarrow.dataset.dataset([str(p) for p in sorted(folder.glob("*.parquet"))]).to_table()
     total = pyarrow.compute.sum(table["transmittance"].cast("float64")).as_py()
     views = len(pyarrow.compute.unique(table["view"]))
     assert (table.num_rows, pytest.approx(total), views) == expected(rows)
@@ -126,6 +127,27 @@ def test_pandas_takes_the_stream(rows):
     pytest.importorskip("pandas")
     frame = pyarrow.table(rows).to_pandas()
     assert (len(frame), pytest.approx(float(frame["transmittance"].astype("float64").sum())), frame["view"].nunique()) == expected(rows)
+
+
+def test_statistics_are_numpy_s(folder, rows):
+    statistics = peelnet.Dataset(folder).manifest["statistics"]
+    for column, (name, values) in zip(statistics, rows.to_numpy().items(), strict=True):
+        values = values.astype(np.float64)
+        assert column["name"] == name
+        assert (column["min"], column["max"]) == (values.min(), values.max())
+        assert (column["mean"], column["deviation"]) == pytest.approx((values.mean(), values.std()), abs=1e-12 * values.max())
+        assert np.histogram(values, column["edges"])[0].tolist() == column["counts"]
+
+
+def test_a_readme_of_others_is_reported(tmp_path):
+    out = tmp_path / "d"
+    assert peelnet.extract(["cups", "panes"], size=(8, 8), out=out, shard="1/2") is None
+    (out / "README.md").write_text("mine")
+    with pytest.warns(UserWarning, match="README.md is not as peelnet writes it"):
+        peelnet.extract(["cups", "panes"], size=(8, 8), out=out, shard="2/2")
+    with pytest.warns(UserWarning, match="README.md is not as peelnet writes it"):
+        peelnet.seal(out)
+    assert (out / "README.md").read_text() == "mine"
 
 
 def test_progress_counts_views(bar, tmp_path):

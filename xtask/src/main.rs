@@ -46,7 +46,8 @@ cargo xtask <command>
   fuzz [SECONDS]  each fuzz target for so long (default 1800), on nightly Rust
   three           the package for three.js: types, tests in Chromium on WebGPU and WebGL 2; then the examples for Babylon.js and PlayCanvas (minutes; needs
                   Node.js 20 and npm)
-  python [--ray]  the Python package: lints, pip install ./python, its tests; with Ray in it (700 MB from PyPI) also those of peelnet.ray
+  python [--ray]  the Python package: lints, pip install ./python, its tests; with Ray and other readers of datasets in it (4 GB from PyPI)
+                  also those of peelnet.ray and of these
   cluster [--workers N,…] [--scenes N] [--folders]
                   lints of deploy/; datasets and models in an S3 server; Ray with two nodes in a network namespace: scenes extracted to S3
                   (or folders) while a worker and a node are killed, compared with one process
@@ -79,7 +80,7 @@ fn main() -> ExitCode {
         ["peers"] => run("python3 benches/peers/train.py")
             .and_then(|()| run("python3 benches/peers/transparency.py")),
         ["python"] => suites::python("test"),
-        ["python", "--ray"] => suites::python("test,ray"),
+        ["python", "--ray"] => suites::python("test,ray,readers"),
         ["cluster", ref rest @ ..] => suites::cluster(rest),
         [name] if let Some(suite) = suites::find(name) => suite(),
         [] | ["help" | "--help" | "-h", ..] => {

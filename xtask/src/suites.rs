@@ -23,7 +23,7 @@ pub const SUITES: [Step; 12] = [
     ("deny", deny),
     ("wasm", wasm),
     ("languages", languages),
-    ("python", || python("test,ray")),
+    ("python", || python("test,ray,readers")),
     ("faults", || {
         again("PEELNET_KILLS", "50", "peelnet --test all -- faults::")
     }),

@@ -144,7 +144,8 @@ pub struct RunArgs {
   peelnet extract scene.toml --out d --resume           what a run that was stopped left to do
   peelnet extract --synthetic 300000 --out d            no scene: synthetic fragment lists, from the seed
 
-DATASET is a folder: the fragment files, and _peelnet/ with manifest.json. The same seed gives the same rows and the same manifest.")]
+DATASET is a folder: the fragment files, README.md and croissant.json, which describe them to others, and _peelnet/ with manifest.json, which
+has statistics of every column. The same seed gives the same rows and the same manifest.")]
 pub struct ExtractArgs {
     /// Scene files, or names of shipped scenes
     #[arg(value_name = "SCENE", required_unless_present = "synthetic")]

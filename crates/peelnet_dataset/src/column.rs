@@ -85,6 +85,20 @@ macro_rules! columns {
                 }
             }
 
+            /// The unit of the values: `1`, `pixels` or `scene units`.
+            pub const fn unit(self) -> &'static str {
+                match self {
+                    $(Self::$variant => $unit,)+
+                }
+            }
+
+            /// What a value says, as one sentence of Markdown.
+            pub fn meaning(self) -> &'static str {
+                match self {
+                    $(Self::$variant => concat!($($doc),+).trim_ascii(),)+
+                }
+            }
+
             const fn allowed(self) -> Allowed {
                 match self {
                     $(Self::$variant => Allowed::$allowed,)+
@@ -250,6 +264,11 @@ impl FragmentBatch {
 }
 
 impl Column {
+    /// Whether all values are from 0 to 1.
+    pub(crate) fn is_fraction(self) -> bool {
+        self.allowed() == Allowed::ZeroToOne
+    }
+
     /// The column of a name, if there is one.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|c| c.name() == name)

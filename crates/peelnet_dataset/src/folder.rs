@@ -140,14 +140,24 @@ pub(crate) fn older_files(folder: &Path) -> Result<Vec<Found>, DatasetError> {
     control.retain(|name| name != PARTS);
     control.sort();
     let mut listed: BTreeMap<String, (u64, String)> = BTreeMap::new();
+    let (mut plan, mut card, mut recorded) = (None, None, Vec::new());
     for name in &control {
         let parts = if name == PLAN {
-            Plan::read(&store).map(|_| Vec::new())
+            let read = Plan::read(&store).map(|found| plan = found);
+            read.map(|()| Vec::new())
         } else if name == MANIFEST {
-            Manifest::read(&store).map(|m| m.map_or(Vec::new(), |m| m.parts))
+            let read = Manifest::read(&store);
+            read.map(|m| {
+                m.map_or(Vec::new(), |m| {
+                    card = Some(m.card);
+                    m.parts
+                })
+            })
         } else if let Some(index) = PartRecord::index(name) {
             let record = PartRecord::read(&store, index, None);
-            record.map(|r| r.map(|r| r.part).into_iter().collect())
+            let part = record.map(|r| r.map(|r| r.part));
+            recorded.extend(part.iter().flatten().cloned());
+            part.map(|part| part.into_iter().collect())
         } else {
             return Err(not_ours(folder, name, None));
         };
@@ -155,6 +165,10 @@ pub(crate) fn older_files(folder: &Path) -> Result<Vec<Found>, DatasetError> {
         let files = parts.into_iter().flat_map(|part| part.files);
         listed.extend(files.map(|f| (f.name, (f.bytes, f.sha256))));
     }
+    // The card is written right before the manifest: a writer may have died between the two.
+    let card = card.or_else(|| plan.map(|plan| plan.manifest(recorded).card));
+    let card = card.into_iter().flatten();
+    listed.extend(card.map(|f| (f.name, (f.bytes, f.sha256))));
     let mut files = Vec::new();
     for name in names_in(folder)?.into_iter().filter(|n| n != META) {
         let path = folder.join(&name);

@@ -1,8 +1,8 @@
 //! The fragment dataset: what peeling writes and training reads.
 //!
 //! A dataset is a folder, or a prefix of a bucket. It holds one *part* for every work item (scene × augmentation copy × view), as files
-//! that lie flat in the folder. Everything else lies in `_peelnet/`, which readers of whole folders skip: DuckDB, Polars, pyarrow and Ray
-//! Data read a sealed folder as one table.
+//! that lie flat in the folder, with a card beside them once it is sealed. Everything else lies in `_peelnet/`. DuckDB, Polars, pyarrow,
+//! Ray Data and Hugging Face `datasets` read a sealed folder as one table.
 //!
 //! ```text
 //! DATASET/
@@ -11,7 +11,9 @@
 //!   _peelnet/plan.json                        what all writers agree on, and its hash
 //!   _peelnet/parts/00000.json                 work item 0 is finished: counts, sha256 of its files, its writer
 //!   _peelnet/parts/00001.json
-//!   _peelnet/manifest.json                    the seal: scenes, cameras, counts, sha256 of every file
+//!   README.md                                 the card: what this is, for people and for the Hugging Face hub
+//!   croissant.json                            the same for programs (Croissant 1.1): files with hashes, columns, provenance
+//!   _peelnet/manifest.json                    the seal: scenes, cameras, counts, statistics by column, sha256 of every file
 //! ```
 //!
 //! A row is one fragment, and its columns are those of [`Column`], always in that order. The rows of one
@@ -30,6 +32,10 @@
 //! [`Header::shard`] takes every N-th work item, [`Header::resume`] whatever is missing. Whoever finishes the last part seals the dataset,
 //! and [`seal`](fn@seal) does it afterwards; the manifest's bytes do not depend on who does.
 //!
+//! **Statistics** of every column (see [`ColumnStatistics`]) are gathered while rows are written, kept in a part's record, and merged by the
+//! seal, in the parts' order. **The card** follows from plan and manifest. It is written once, with the seal, and never replaced: an edited
+//! card is the user's, see [`foreign_card`]. Nothing that reads rows reads it.
+//!
 //! **Reading.** [`Dataset::open`] checks the manifest and the sizes of all files; the hash of a file is checked before its
 //! first row is read. [`Dataset::batches`] streams whole pixels, [`Dataset::read_columns`] loads chosen columns. Every value is
 //! checked against its column's range on the way in *and* on the way out, so a NaN cannot reach a network. [`summary`] recomputes what the
@@ -39,6 +45,7 @@
 //! `file:///…` does always. Settings and credentials come from the environment (`AWS_…`, `GOOGLE_…`, `AZURE_…`). A part is written on this
 //! machine and sent by one conditional request for each file; a part that is read is fetched whole. Datasets there are never replaced.
 
+mod card;
 mod column;
 mod error;
 mod folder;
@@ -49,6 +56,7 @@ mod parts;
 mod plan;
 mod reader;
 pub mod split;
+mod statistics;
 mod store;
 pub mod summary;
 mod writer;
@@ -63,11 +71,12 @@ pub use hash::sha256;
 pub use manifest::{
     CameraInfo, ColumnEntry, FileEntry, MAX_WORK_ITEMS, Manifest, Part, SCHEMA_VERSION, SceneEntry,
 };
-pub use parts::{seal, unsealed_parts};
+pub use parts::{FOREIGN_CARD, foreign_card, seal, unsealed_parts};
 pub use peelnet_core::files::is_remote;
 pub use plan::{Header, Shard, worker_name};
 pub use reader::{Batches, Dataset};
 pub use split::{Split, SplitBy, Subset};
+pub use statistics::ColumnStatistics;
 pub use store::{create_object, read_object};
 pub use summary::{Summary, check_rows};
 pub use writer::{DatasetWriter, PartWriter};

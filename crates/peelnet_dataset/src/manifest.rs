@@ -7,9 +7,11 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
+use crate::card;
 use crate::column::{Column, ColumnKind};
 use crate::error::DatasetError;
 use crate::formats::Format;
+use crate::statistics::ColumnStatistics;
 use crate::store::{FRAGMENTS, MANIFEST, Store};
 
 /// The version of the layout that this crate writes and reads.
@@ -68,6 +70,13 @@ pub struct Manifest {
     /// Hash over (part index, sha256 of each file): the same for the same rows in the same format, however they
     /// were sharded.
     pub hash: String,
+    /// The files that describe the dataset to others, as it was sealed: `README.md` and `croissant.json`. They may be edited or removed, which
+    /// changes nothing about the rows. Empty in manifests of earlier versions.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub card: Vec<FileEntry>,
+    /// Statistics of all rows, one entry for each column in order. Empty where there are no rows, and in manifests of earlier versions.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub statistics: Vec<ColumnStatistics>,
     /// One entry for each work item, by index.
     pub parts: Vec<Part>,
 }
@@ -147,9 +156,12 @@ pub struct Part {
     pub row_groups: Vec<u64>,
     /// The part's files: one, or one for each column in the columns' order (NPY).
     pub files: Vec<FileEntry>,
+    /// Statistics of the part's rows, in its record; the manifest has those of all parts together.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub statistics: Vec<ColumnStatistics>,
 }
 
-/// A file of a part.
+/// A file of a part, or of the card.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct FileEntry {
     /// Name inside the dataset's folder.
@@ -217,7 +229,12 @@ impl Manifest {
         if self.hash != hash_of_parts(&self.parts) {
             return Err("`hash` does not fit the files' hashes".to_owned());
         }
-        Ok(())
+        // What is listed may be removed with the dataset.
+        let mut card = self.card.iter();
+        match card.find(|file| !card::NAMES.contains(&file.name.as_str())) {
+            Some(file) => Err(format!("{:?} is no file of a card", file.name)),
+            None => Ok(()),
+        }
     }
 
     fn check_part(&self, k: usize, part: &Part) -> Result<(), String> {

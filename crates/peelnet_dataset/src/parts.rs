@@ -2,14 +2,16 @@
 //! makes them one dataset.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use peelnet_core::files::printable;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
+use crate::card;
 use crate::error::DatasetError;
 use crate::folder;
+use crate::hash::sha256;
 use crate::manifest::{EXTRACT_AGAIN, FileEntry, Manifest, Part, read_json, to_json};
 use crate::plan::Plan;
 use crate::store::{FRAGMENTS, Fetched, MANIFEST, PARTS, Store, open_store, store_at};
@@ -195,6 +197,10 @@ pub(crate) fn whole(
     if let Err(reason) = manifest.check() {
         return wrong(PARTS, &reason);
     }
+    // Before the seal: a sealed dataset has its card. What is there is another writer's of the same bytes, or the user's, and stays.
+    for (name, text) in card::files(plan, &manifest) {
+        store.put_if_absent(name, text.as_bytes())?;
+    }
     // Another writer may come to its end at the same time.
     if !store.put_if_absent(MANIFEST, to_json(&manifest).as_bytes())?
         && Manifest::read(store)?.as_ref() != Some(&manifest)
@@ -202,6 +208,26 @@ pub(crate) fn whole(
         return wrong(MANIFEST, "the manifest that is there is of other parts");
     }
     Ok(Some(manifest))
+}
+
+/// What to say of a file that [`foreign_card`] lists, after its name.
+pub const FOREIGN_CARD: &str =
+    "is not as peelnet writes it, so it was written or edited by others; it stays as it is";
+
+/// The files of a sealed dataset's card that somebody else wrote or edited, so that they say what others say; one that is gone is not
+/// listed. They stay whatever peelnet does.
+///
+/// # Errors
+/// Those of reading a manifest. What cannot be read in place of a card is somebody else's.
+pub fn foreign_card(path: impl AsRef<Path>) -> Result<Vec<PathBuf>, DatasetError> {
+    let store = store_at(path.as_ref())?;
+    let card = Manifest::read(&*store)?.map_or(Vec::new(), |m| m.card);
+    let is_foreign = |file: &FileEntry| match store.get(&file.name, file.bytes) {
+        Ok(found) => found.is_some_and(|bytes| sha256(&bytes) != file.sha256),
+        Err(_) => true,
+    };
+    let foreign = card.iter().filter(|file| is_foreign(file));
+    Ok(foreign.map(|file| store.shown(&file.name)).collect())
 }
 
 /// Every file of the parts must be there with its length. For a seal, no other file of rows may lie beside them.
@@ -251,9 +277,10 @@ pub(crate) fn check_hash(
 pub(crate) fn is_as_recorded(store: &dyn Store, part: &Part) -> Result<bool, DatasetError> {
     let record = PartRecord::read(store, part.index, None)?;
     Ok(record.is_none_or(|record| {
-        let files = part.files.clone();
+        let (files, statistics) = (part.files.clone(), part.statistics.clone());
         Part {
             files,
+            statistics,
             ..record.part
         } == *part
     }))

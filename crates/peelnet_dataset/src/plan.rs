@@ -10,6 +10,7 @@ use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
 
+use crate::card;
 use crate::error::DatasetError;
 use crate::formats::Format;
 use crate::hash::sha256;
@@ -17,6 +18,7 @@ use crate::manifest::{
     EXTRACT_AGAIN, MAX_WORK_ITEMS, Manifest, Part, SCHEMA_VERSION, SceneEntry, columns,
     hash_of_parts, read_json, to_json,
 };
+use crate::statistics;
 use crate::store::{PLAN, Store};
 
 /// What is known about a dataset before its first row: what all its writers agree on, and who this one is. The plan's file is its JSON,
@@ -200,10 +202,11 @@ impl Plan {
 
     pub(crate) fn manifest(&self, mut parts: Vec<Part>) -> Manifest {
         parts.sort_by_key(|p| p.index);
+        let statistics = statistics::take_merged(&mut parts);
         // Records come from outside, with any numbers in them.
         let sum = |count: fn(&Part) -> u64| parts.iter().map(count).fold(0, u64::saturating_add);
         let header = self.header.clone();
-        Manifest {
+        let mut manifest = Manifest {
             schema: self.schema,
             plan: self.hash.clone(),
             tool_version: header.tool_version,
@@ -223,8 +226,15 @@ impl Plan {
             lost_fragments: sum(|p| p.lost_fragments),
             coplanar_ties: sum(|p| p.coplanar_ties),
             hash: hash_of_parts(&parts),
+            card: Vec::new(),
+            statistics,
             parts,
+        };
+        // Of records that nobody has checked yet, a card could be of anything.
+        if manifest.is_whole() && manifest.check().is_ok() {
+            manifest.card = card::entries(&card::files(self, &manifest));
         }
+        manifest
     }
 }
 

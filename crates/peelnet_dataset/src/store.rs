@@ -132,7 +132,10 @@ impl Store for Folder {
         let target = self.path.join(name);
         let folder = peelnet_core::files::folder_of(&target);
         fs::create_dir_all(folder).map_err(DatasetError::io(folder, "create the folder"))?;
-        let scratch = self.scratch.as_deref().unwrap_or(folder);
+        // Where the next writer finds and removes what a killed one leaves.
+        let meta = Some(self.path.join(META)).filter(|meta| meta.is_dir());
+        let scratch = self.scratch.as_deref().or(meta.as_deref());
+        let scratch = scratch.unwrap_or(folder);
         let write = || {
             let (mut file, _unfinished) = peelnet_core::files::temporary(scratch, PARTIAL)?;
             file.write_all(bytes)?;

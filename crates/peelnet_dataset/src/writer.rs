@@ -15,6 +15,7 @@ use crate::hash::hash_file;
 use crate::manifest::{FileEntry, Manifest, Part, to_json};
 use crate::parts::{self, PartRecord};
 use crate::plan::{Header, Plan};
+use crate::statistics::Gatherer;
 use crate::store::{FRAGMENTS, Folder, PLAN, Store, store_at};
 
 /// Writes a dataset, or some parts of it.
@@ -123,6 +124,7 @@ impl DatasetWriter {
             part,
             names,
             sink,
+            statistics: Column::ALL.map(Gatherer::new).into(),
             last_pixel: None,
         })
     }
@@ -258,6 +260,8 @@ pub struct PartWriter<'a> {
     name: PathBuf,
     names: Vec<String>,
     sink: Box<dyn PartSink>,
+    /// Of each column, gathered while rows pass.
+    statistics: Vec<Gatherer>,
     last_pixel: Option<[u32; 2]>,
 }
 
@@ -268,10 +272,16 @@ impl PartWriter<'_> {
     /// If the columns differ in length, a value is out of range (see [`Column`]), or the disk refuses.
     pub fn write(&mut self, rows: &FragmentBatch) -> Result<(), DatasetError> {
         rows.check()?;
-        let part = &mut self.part;
-        for column in Column::ALL {
-            rows.check_column(&self.name, column, 0, part.rows, part)?;
-        }
+        let (name, part) = (&self.name, &mut self.part);
+        let columns = Column::ALL.into_par_iter().zip(&mut self.statistics);
+        let checked = columns.map(|(column, statistics)| {
+            rows.check_column(name, column, 0, part.rows, part)?;
+            statistics.add(rows.column(column));
+            Ok(())
+        });
+        // The first column's error, whichever came first.
+        let checked: Vec<Result<(), DatasetError>> = checked.collect();
+        checked.into_iter().collect::<Result<(), _>>()?;
         for (&x, &y) in rows.x.iter().zip(&rows.y) {
             let pixel = Some([x, y]);
             part.pixels += u64::from(pixel != self.last_pixel);
@@ -304,6 +314,11 @@ impl PartWriter<'_> {
             coplanar_ties,
             row_groups: dataset.header.format.row_groups(self.part.rows),
             files: hashed.collect::<Result<_, DatasetError>>()?,
+            statistics: self
+                .statistics
+                .iter()
+                .filter_map(Gatherer::finish)
+                .collect(),
             ..self.part
         };
         if !dataset.replaces {

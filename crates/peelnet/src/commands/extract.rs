@@ -36,6 +36,9 @@ pub(super) fn run(context: &Context<'_>, args: &ExtractArgs) -> Result<(), Failu
     })?;
     let m = &report.manifest;
     warn_of_empty(context, &report);
+    if m.is_whole() {
+        warn_of_foreign_card(context, out)?;
+    }
     let text = || text(out, &report);
     context.console.result(text, || {
         json!({
@@ -61,6 +64,7 @@ pub(super) fn run(context: &Context<'_>, args: &ExtractArgs) -> Result<(), Failu
 
 pub(super) fn seal(context: &Context<'_>, args: &SealArgs) -> Result<(), Failure> {
     let m = peelnet_dataset::seal(&args.dataset)?;
+    warn_of_foreign_card(context, &args.dataset)?;
     let text = || {
         format!(
             "{}: sealed, {} of {} in {}, hash {}",
@@ -85,6 +89,15 @@ pub(super) fn seal(context: &Context<'_>, args: &SealArgs) -> Result<(), Failure
             "adapter": m.adapter,
         })
     })
+}
+
+/// Warns of files in a sealed dataset that stand where its card would, but are not the card.
+fn warn_of_foreign_card(context: &Context<'_>, dataset: &Path) -> Result<(), Failure> {
+    for path in peelnet_dataset::foreign_card(dataset)? {
+        let note = peelnet_dataset::FOREIGN_CARD;
+        context.console.warn(format!("{} {note}", shown(&path)));
+    }
+    Ok(())
 }
 
 /// How many parts of a dataset that is not sealed are finished, and how many it will have.

@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "a failing test may panic")]
 
 mod bad_input;
+mod cards;
 mod many_writers;
 mod round_trip;
 
