@@ -4,7 +4,7 @@ use crate::{
     group::GROUP,
     model::{MASK, Pass},
     pipelines::Setup,
-    view::{LearnedViews, Targets},
+    view::{LearnedView, LearnedViews, Targets},
 };
 use bevy::{
     camera::{MainPassResolutionOverride, Viewport},
@@ -30,6 +30,68 @@ type ViewParts<'w> = (
     Option<&'w MainPassResolutionOverride>,
 );
 
+/// A view in which something is weighed, and where its passes draw.
+struct Drawn<'w> {
+    world: &'w World,
+    entity: Entity,
+    state: &'w LearnedView,
+    targets: &'w Targets,
+    image: &'w ViewTarget,
+    depth: &'w ViewDepthStencilTexture,
+    viewport: Viewport,
+}
+
+impl<'w> Drawn<'w> {
+    fn new(
+        world: &'w World,
+        entity: Entity,
+        (camera, extracted, image, depth, resolution): ViewParts<'w>,
+        views: &'w LearnedViews,
+    ) -> Option<Self> {
+        let state = views.0.get(&extracted.retained_view_entity)?;
+        Some(Self {
+            world,
+            entity,
+            state,
+            targets: state.targets.as_ref()?,
+            image,
+            depth,
+            viewport: viewport_of(camera, resolution)?,
+        })
+    }
+
+    /// A pass over all weighed surfaces.
+    fn draw_surfaces(
+        &self,
+        context: &mut RenderContext<'_, '_>,
+        pass: &Pass,
+        (group, phase): &(BindGroup, SortedRenderPhase<Transparent3d>),
+        attachments: &[Option<RenderPassColorAttachment<'_>>],
+    ) {
+        let diagnostics = context.diagnostic_recorder();
+        let diagnostics = diagnostics.as_deref();
+        let depth = (!pass.is_small()).then_some(self.depth);
+        let mut drawing = context.begin_tracked_render_pass(RenderPassDescriptor {
+            label: Some("peelnet_pass"),
+            color_attachments: attachments,
+            // Stored where nothing writes it, too: it would be lost otherwise.
+            depth_stencil_attachment: depth.map(|depth| depth.get_attachment(StoreOp::Store)),
+            ..default()
+        });
+        let span = diagnostics.pass_span(&mut drawing, format!("peelnet_{}", pass.name));
+        let viewport = &self.viewport;
+        let origin = viewport.physical_position.as_vec2() / pass.every as f32;
+        let size = viewport.physical_size.as_vec2() / pass.every as f32;
+        let Range { start, end } = viewport.depth;
+        drawing.set_viewport(origin.x, origin.y, size.x, size.y, start, end);
+        drawing.set_bind_group(GROUP, group, &[]);
+        if let Err(problem) = phase.render(&mut drawing, self.world, self.entity) {
+            error!("peelnet pass {:?}: {problem}", pass.name);
+        }
+        span.end(&mut drawing);
+    }
+}
+
 pub(crate) fn learned_transparent_pass(
     world: &World,
     view: ViewQuery<ViewParts<'static>>,
@@ -38,16 +100,12 @@ pub(crate) fn learned_transparent_pass(
     cache: Res<PipelineCache>,
     mut context: RenderContext<'_, '_>,
 ) {
-    let entity = view.entity();
-    let (camera, extracted, target, depth, resolution) = view.into_inner();
-    let state = views.0.get(&extracted.retained_view_entity);
-    let targets = state.and_then(|state| state.targets.as_ref());
+    let Some(drawn) = Drawn::new(world, view.entity(), view.into_inner(), &views) else {
+        return;
+    };
+    let (state, targets) = (drawn.state, drawn.targets);
     let pipeline = |id: Option<CachedRenderPipelineId>| cache.get_render_pipeline(id?);
-    let resolve = state.and_then(|state| pipeline(state.resolve));
-    let viewport = viewport_of(camera, resolution);
-    let (Some(state), Some(targets), Some(resolve), Some(viewport)) =
-        (state, targets, resolve, viewport)
-    else {
+    let Some(resolve) = pipeline(state.resolve) else {
         return;
     };
     let description = &setup.model.description;
@@ -56,17 +114,7 @@ pub(crate) fn learned_transparent_pass(
         let attachments: Vec<_> = attachments
             .map(|target| Some(cleared(targets, &target.name, target.clear)))
             .collect();
-        let depth = (!pass.is_small()).then_some(depth);
-        draw_surfaces(
-            &mut context,
-            world,
-            entity,
-            pass,
-            surfaces,
-            &attachments,
-            depth,
-            &viewport,
-        );
+        drawn.draw_surfaces(&mut context, pass, surfaces, &attachments);
         let around = description.around.as_ref().filter(|_| pass.is_small());
         if let (Some(around), Some(made_by), Some(group)) =
             (around, pipeline(state.around), &targets.around_group)
@@ -83,7 +131,7 @@ pub(crate) fn learned_transparent_pass(
             );
         }
     }
-    let mut attachments = vec![Some(target.get_color_attachment())];
+    let mut attachments = vec![Some(drawn.image.get_color_attachment())];
     if let Some(mask) = &targets.mask {
         let mut samples = cleared(targets, MASK, setup.model.mask.clear);
         let is_mean = mask.texture.id() != targets.textures[MASK].texture.id();
@@ -95,7 +143,7 @@ pub(crate) fn learned_transparent_pass(
         &mut context,
         "resolve",
         &attachments,
-        Some(&viewport),
+        Some(&drawn.viewport),
         resolve,
         group,
     );
@@ -109,26 +157,12 @@ pub(crate) fn learned_depth_pass(
     views: Res<LearnedViews>,
     mut context: RenderContext<'_, '_>,
 ) {
-    let entity = view.entity();
-    let (camera, extracted, _, depth, resolution) = view.into_inner();
-    let state = views.0.get(&extracted.retained_view_entity);
-    let targets = state.and_then(|state| state.targets.as_ref());
-    let passes = targets.map(|targets| setup.model.passes().zip(&targets.passes));
-    let viewport = viewport_of(camera, resolution);
-    let (Some(mut passes), Some(viewport)) = (passes, viewport) else {
+    let Some(drawn) = Drawn::new(world, view.entity(), view.into_inner(), &views) else {
         return;
     };
+    let mut passes = setup.model.passes().zip(&drawn.targets.passes);
     if let Some((pass, surfaces)) = passes.find(|(pass, _)| pass.writes_depth) {
-        draw_surfaces(
-            &mut context,
-            world,
-            entity,
-            pass,
-            surfaces,
-            &[],
-            Some(depth),
-            &viewport,
-        );
+        drawn.draw_surfaces(&mut context, pass, surfaces, &[]);
     }
 }
 
@@ -157,38 +191,6 @@ fn cleared<'a>(targets: &'a Targets, name: &str, clear: [f64; 4]) -> RenderPassC
             store: StoreOp::Store,
         },
     }
-}
-
-/// A pass over all weighed surfaces.
-fn draw_surfaces(
-    context: &mut RenderContext<'_, '_>,
-    world: &World,
-    view: Entity,
-    pass: &Pass,
-    (group, phase): &(BindGroup, SortedRenderPhase<Transparent3d>),
-    attachments: &[Option<RenderPassColorAttachment<'_>>],
-    depth: Option<&ViewDepthStencilTexture>,
-    viewport: &Viewport,
-) {
-    let diagnostics = context.diagnostic_recorder();
-    let diagnostics = diagnostics.as_deref();
-    let mut drawing = context.begin_tracked_render_pass(RenderPassDescriptor {
-        label: Some("peelnet_pass"),
-        color_attachments: attachments,
-        // Stored where nothing writes it, too: it would be lost otherwise.
-        depth_stencil_attachment: depth.map(|depth| depth.get_attachment(StoreOp::Store)),
-        ..default()
-    });
-    let span = diagnostics.pass_span(&mut drawing, format!("peelnet_{}", pass.name));
-    let origin = viewport.physical_position.as_vec2() / pass.every as f32;
-    let size = viewport.physical_size.as_vec2() / pass.every as f32;
-    let Range { start, end } = viewport.depth;
-    drawing.set_viewport(origin.x, origin.y, size.x, size.y, start, end);
-    drawing.set_bind_group(GROUP, group, &[]);
-    if let Err(problem) = phase.render(&mut drawing, world, view) {
-        error!("peelnet pass {:?}: {problem}", pass.name);
-    }
-    span.end(&mut drawing);
 }
 
 /// A pass over the pixels of attachments, or over those of a viewport.

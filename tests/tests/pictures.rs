@@ -28,6 +28,13 @@ fn picture(image: &Image) -> image::RgbImage {
     image::RgbImage::from_raw(image.width, image.height, image.to_srgb8()).unwrap()
 }
 
+/// The fraction of the pixels, of three bytes each, of which a channel is off by more than so many steps.
+fn fraction_off(a: &[u8], b: &[u8], steps: u8) -> f64 {
+    let pixels = a.chunks(3).zip(b.chunks(3));
+    let off = pixels.filter(|(a, b)| a.iter().zip(*b).any(|(a, b)| a.abs_diff(*b) > steps));
+    off.count() as f64 / (a.len() / 3) as f64
+}
+
 #[test]
 fn pictures_are_the_committed_ones() {
     let gpu = gpu();
@@ -47,9 +54,7 @@ fn pictures_are_the_committed_ones() {
             let (a, b) = (found.get_pixel(x, y).0, want.get_pixel(x, y).0);
             image::Rgb([0, 1, 2].map(|k| a[k].abs_diff(b[k])))
         });
-        let differs = differences.pixels();
-        let differs = differs.filter(|p| p.0.iter().any(|d| *d > STEPS)).count();
-        let fraction = differs as f64 / f64::from(SIZE[0] * SIZE[1]);
+        let fraction = fraction_off(&found, &want, STEPS);
         if fraction > SILHOUETTES {
             let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("pictures");
             fs::create_dir_all(&folder).unwrap();
@@ -86,11 +91,7 @@ fn lines_of_alpha_one_cover_translucent_areas() {
     let scene = peelnet_scene::Scene::load(&file).unwrap();
     let gpu = gpu();
     let [exact, others @ ..] = LINES_METHODS.map(|m| draw(&gpu, &scene, m, [512, 384]).to_srgb8());
-    let off = others.map(|image| {
-        let pixels = image.chunks(3).zip(exact.chunks(3));
-        let off = pixels.filter(|(a, b)| a.iter().zip(*b).any(|(a, b)| a.abs_diff(*b) > 2));
-        off.count() as f64 / (image.len() / 3) as f64
-    });
+    let off = others.map(|image| fraction_off(&image, &exact, 2));
     for (method, off) in LINES_METHODS[1..].iter().zip(off) {
         println!("{method}: {:.3} % of the pixels", 100.0 * off);
     }

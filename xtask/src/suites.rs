@@ -60,7 +60,7 @@ fn bevy() -> Outcome {
     ))?;
     // In a browser, which the package for three.js starts.
     ensure_browser()?;
-    run("npm --prefix packages/three ci --no-audit --no-fund")?;
+    npm_ci("packages/three")?;
     let folder = web::bevy_page()?;
     start(command("node --test bevy/web/page.test.mjs").env("PEELNET_PAGE", folder))
 }
@@ -74,10 +74,15 @@ fn wasm() -> Outcome {
         .map_err(|e| format!("{e}; where the target is missing: rustup target add {target}"))
 }
 
+/// Installs what a package of npm in this folder needs.
+pub fn npm_ci(folder: &str) -> Outcome {
+    run(&format!("npm --prefix {folder} ci --no-audit --no-fund"))
+}
+
 /// Installs and tests a package of npm in this folder.
 fn npm(folder: &str, more: &[(&str, &Path)]) -> Outcome {
     ensure_browser()?;
-    run(&format!("npm --prefix {folder} ci --no-audit --no-fund"))?;
+    npm_ci(folder)?;
     let mut test = command(&format!("npm --prefix {folder} test"));
     start(test.envs(more.iter().copied()))
 }

@@ -1,6 +1,6 @@
 //! The viewer's page: `cargo xtask web`.
 
-use crate::{Outcome, captured, command, root, run, start, target_folder};
+use crate::{Outcome, captured, command, root, run, start, suites::npm_ci, target_folder};
 use std::{
     env, fs,
     path::{Path, PathBuf},
@@ -14,12 +14,10 @@ pub fn web() -> Outcome {
     compile("cargo rustc --package peelnet_view --lib --crate-type cdylib")?;
     let wasm = target_folder().join(TARGET).join("web/peelnet_view.wasm");
     // The file is packed, too.
-    let folder = glue(&wasm, "out/web", "")?;
-    let index = root().join("crates/peelnet_view/web/index.html");
-    fs::copy(&index, folder.join("index.html")).map_err(|e| format!("{}: {e}", index.display()))?;
+    let folder = page(&wasm, "crates/peelnet_view/web/index.html", "out/web", "")?;
     sizes(&folder)?;
     // The example of the package for three.js, a page of its own.
-    run("npm --prefix packages/three ci --no-audit --no-fund")?;
+    npm_ci("packages/three")?;
     let mut example = command("npm --prefix packages/three run example --");
     start(example.arg(folder.join("three")))
 }
@@ -30,14 +28,12 @@ pub fn bevy_page() -> Result<PathBuf, String> {
     let target =
         env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("bevy/target"), Into::into);
     let wasm = target.join(TARGET).join("web/examples/page.wasm");
-    let folder = glue(&wasm, "out/bevy-page", "--unpacked")?;
+    let folder = page(&wasm, "bevy/web/index.html", "out/bevy-page", "--unpacked")?;
     // Five minutes less than what packs for a network.
     run(&format!(
         "gzip -9f {}",
         folder.join("page_bg.wasm").display()
     ))?;
-    let index = root().join("bevy/web/index.html");
-    fs::copy(&index, folder.join("index.html")).map_err(|e| format!("{}: {e}", index.display()))?;
     Ok(folder)
 }
 
@@ -60,13 +56,15 @@ fn compile(line: &str) -> Outcome {
     start(&mut build)
 }
 
-/// A wasm file and the JavaScript beside it, by a program of ours, whose profile and lock file are its own.
-fn glue(wasm: &Path, folder: &str, more: &str) -> Result<PathBuf, String> {
+/// Puts a page into a folder: its `index.html`, a wasm file, and the JavaScript beside that, by a program of ours, whose profile and lock file are
+/// its own.
+fn page(wasm: &Path, index: &str, folder: &str, more: &str) -> Result<PathBuf, String> {
     let into = root().join(folder);
     fs::create_dir_all(&into).map_err(|e| format!("{}: {e}", into.display()))?;
     let mut glue = command("cargo run --quiet --manifest-path xtask/glue/Cargo.toml --target-dir");
     glue.arg(target_folder().join("glue")).arg("--").arg(wasm);
     start(glue.arg(folder).args(more.split_whitespace()))?;
+    fs::copy(root().join(index), into.join("index.html")).map_err(|e| format!("{index}: {e}"))?;
     Ok(into)
 }
 

@@ -25,11 +25,11 @@ const CONTEXT: &str = include_str!("card/context.json");
 /// Names and texts of a whole dataset's card.
 pub(crate) fn files(plan: &Plan, manifest: &Manifest) -> [(&'static str, String); NAMES.len()] {
     let croissant = to_json(&croissant(plan, manifest));
-    let texts = [
-        readme(plan, manifest),
-        printable_json(&croissant).into_owned(),
-    ];
-    std::array::from_fn(|k| (NAMES[k], texts[k].clone()))
+    let [for_people, for_programs] = NAMES;
+    [
+        (for_people, readme(plan, manifest)),
+        (for_programs, printable_json(&croissant).into_owned()),
+    ]
 }
 
 /// What a manifest says of these files.
@@ -42,32 +42,32 @@ pub(crate) fn entries(files: &[(&str, String)]) -> Vec<FileEntry> {
     files.iter().map(entry).collect()
 }
 
-/// Media type of a part's files, and what reads them, with `PATH` for the files; the front matter is for formats that `datasets` reads.
-const fn readers(format: Format) -> (&'static str, bool, &'static str) {
+const fn media_type(format: Format) -> &'static str {
     match format {
-        Format::Parquet => (
-            "application/x-parquet",
-            true,
-            "datasets.load_dataset(\"DATASET\")\n\
-             duckdb.sql(\"from read_parquet('DATASET/PATH')\")\n\
-             polars.scan_parquet(\"DATASET/PATH\")\n\
-             peelnet.Dataset(\"DATASET\").read()\n",
-        ),
-        Format::Csv => (
-            "text/csv",
-            true,
-            "datasets.load_dataset(\"DATASET\")\n\
-             duckdb.sql(\"from read_csv('DATASET/PATH')\")\n\
-             polars.scan_csv(\"DATASET/PATH\")\n\
-             peelnet.Dataset(\"DATASET\").read()\n",
-        ),
-        Format::Npy => (
-            "application/octet-stream",
-            false,
-            "numpy.load(path)    # of each of DATASET/PATH, one column of one part\n\
-             peelnet.Dataset(\"DATASET\").read()\n",
-        ),
+        Format::Parquet => "application/x-parquet",
+        Format::Csv => "text/csv",
+        Format::Npy => "application/octet-stream",
     }
+}
+
+/// Whether a file has all columns: `datasets` and other readers of tables take it as it is.
+fn is_table(format: Format) -> bool {
+    format != Format::Npy
+}
+
+/// What reads the parts, in Python.
+fn reading(format: Format) -> String {
+    let pattern = pattern(format);
+    let others = if is_table(format) {
+        format!(
+            "datasets.load_dataset(\"DATASET\")\n\
+             duckdb.sql(\"from read_{format}('DATASET/{pattern}')\")\n\
+             polars.scan_{format}(\"DATASET/{pattern}\")\n"
+        )
+    } else {
+        format!("numpy.load(path)    # of each of DATASET/{pattern}, one column of one part\n")
+    };
+    others + "peelnet.Dataset(\"DATASET\").read()\n"
 }
 
 /// The pattern of the parts' files.
@@ -109,14 +109,12 @@ fn dtype(column: Column) -> &'static str {
 }
 
 fn readme(plan: &Plan, m: &Manifest) -> String {
-    let (_, has_front_matter, reading) = readers(m.format);
-    let front_matter = if has_front_matter {
+    let front_matter = if is_table(m.format) {
         front_matter(m)
     } else {
         String::new()
     };
-    let pattern = pattern(m.format);
-    let reading = reading.replace("PATH", &pattern);
+    let reading = reading(m.format);
     let version = plain(&m.tool_version);
     let mut text = format!(
         "---\n\
@@ -294,7 +292,7 @@ fn front_matter(m: &Manifest) -> String {
 }
 
 fn croissant(plan: &Plan, m: &Manifest) -> Value {
-    let (media_type, has_columns, _) = readers(m.format);
+    let media_type = media_type(m.format);
     let files = m.parts.iter().flat_map(|part| &part.files).map(|file| {
         json!({
             "@type": "cr:FileObject",
@@ -376,7 +374,7 @@ fn croissant(plan: &Plan, m: &Manifest) -> Value {
         "prov:wasDerivedFrom": scenes.collect::<Value>(),
         "distribution": distribution,
     });
-    if has_columns {
+    if is_table(m.format) {
         croissant["recordSet"] = records;
     }
     croissant

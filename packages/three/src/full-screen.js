@@ -8,9 +8,9 @@ const mode = ( blending ) => Object.assign( new BlendMode(), blending );
 
 /** Colours that are multiplied by their coverage, over what lies below. */
 export const OVER = /*@__PURE__*/ factors( OneFactor, OneMinusSrcAlphaFactor );
-/** Coverages, of which both let through what they leave: 1 − (1 − a)(1 − b). */
-export const TOGETHER = { ...factors( OneFactor, OneFactor ), blendDst: OneMinusSrcColorFactor };
 export const ADD = /*@__PURE__*/ factors( OneFactor, OneFactor );
+/** Coverages, of which both let through what they leave: 1 − (1 − a)(1 − b). */
+export const TOGETHER = { ...ADD, blendDst: OneMinusSrcColorFactor };
 /** Leaves a target as it is. */
 export const KEEP = /*@__PURE__*/ mode( factors( ZeroFactor, OneFactor ) );
 
@@ -41,17 +41,19 @@ export function over( image, outputs, blending = OVER ) {
 
 }
 
-/** Draws a quad between passes, whose settings it leaves. */
+/** Draws a quad between passes, whose settings it leaves. It fills its target or blends over it, so nothing is cleared. */
 export function drawQuad( renderer, { target, quad, node = null } ) {
 
-	const { opaque } = renderer;
+	const { autoClear, opaque } = renderer;
 	const draw = renderer.getRenderObjectFunction();
 
 	renderer.setRenderObjectFunction( null );
 	renderer.setMRT( node );
 	renderer.setRenderTarget( target );
+	renderer.autoClear = false;
 	renderer.opaque = true;
 	quad.render( renderer );
+	renderer.autoClear = autoClear;
 	renderer.opaque = opaque;
 	renderer.setRenderObjectFunction( draw );
 

@@ -480,13 +480,9 @@ export class PeelnetPassNode extends PassNode {
 		lighting.enabled = isLit;
 		endBlending();
 
-		renderer.autoClear = false;
 		drawQuad( renderer, { ...over, target: this.renderTarget } );
 
 		if ( coverage !== null ) drawQuad( renderer, coverage );
-
-		renderer.autoClear = true;
-
 		if ( isWhole === false ) return;
 
 		drawQuad( renderer, next );

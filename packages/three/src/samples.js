@@ -45,18 +45,14 @@ export class Samples {
 			// Which texture the pass draws into may change from frame to frame.
 			this._drawn.value = target.texture;
 			this._target.setSize( target.width, target.height );
-			renderer.autoClear = false;
 			drawQuad( renderer, { quad: this._add, target: this._target } );
-			renderer.autoClear = true;
 
 		}
 
 		if ( offset === null ) camera.clearViewOffset();
 		else camera.setViewOffset( offset.fullWidth, offset.fullHeight, offset.offsetX, offset.offsetY, offset.width, offset.height );
 
-		renderer.autoClear = false;
 		drawQuad( renderer, { ...this._mean, target } );
-		renderer.autoClear = true;
 
 	}
 

@@ -8,6 +8,8 @@ import { aspect, drawn, modelOf } from './helpers.js';
 import { HEIGHT, WIDTH, errors, frameTime, imageOf, makeRenderer, nextFrame, peeled } from './measure.js';
 import * as scenes from './scenes.js';
 
+const median = ( values ) => values.toSorted( ( a, b ) => a - b )[ Math.floor( values.length / 2 ) ];
+
 /** Errors of three.js's two methods and of this one, on a scene. */
 export async function compared( backend, { scene: name = 'fifty', camera: cameraName = 'perspective', models = [ 'medium' ], ranges = [ 'pixel' ] } ) {
 
@@ -97,8 +99,6 @@ export async function mainThread( backend, { model = 'medium', rounds = 15 } ) {
 
 		}
 
-		const median = ( list ) => list.sort( ( a, b ) => a - b )[ list.length >> 1 ];
-
 		result[ name ] = { pass: median( times.pass ), peelnet: median( times.peelnet ) };
 		result[ name ].ratio = result[ name ].peelnet / result[ name ].pass;
 
@@ -133,8 +133,6 @@ export async function afterCompiling( backend, { model = 'medium', rounds = 5 } 
 		renderer.domElement.remove();
 
 	}
-
-	const median = ( list ) => list.sort( ( a, b ) => a - b )[ list.length >> 1 ];
 
 	return { pass: median( times.pass ), peelnet: median( times.peelnet ), ratio: median( times.peelnet ) / median( times.pass ) };
 
@@ -179,7 +177,6 @@ export async function timed( backend, { scene: name = 'fifty', models = [ 'mediu
 
 	}
 
-	const median = ( values ) => values.toSorted( ( a, b ) => a - b )[ Math.floor( values.length / 2 ) ];
 	const rounded = ( value ) => Math.round( 100 * value ) / 100;
 	const result = {};
 

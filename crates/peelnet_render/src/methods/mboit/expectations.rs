@@ -20,11 +20,11 @@ fn guarantees(spec: &MethodSpec) -> Guarantees {
     }
 }
 
-const BLURRED: KnownFailure =
-    KnownFailure::translucent("moments blur what lies close together (Münstermann et al. 2018)");
+const BLUR: &str = "moments blur what lies close together (Münstermann et al. 2018)";
 
-const BLURRED_LINES: KnownFailure =
-    KnownFailure::lines("moments blur what lies close together (Münstermann et al. 2018)");
+const BLURRED: KnownFailure = KnownFailure::translucent(BLUR);
+
+const BLURRED_LINES: KnownFailure = KnownFailure::lines(BLUR);
 
 const fn jumping(cases: &'static str) -> KnownFailure {
     let reason =
