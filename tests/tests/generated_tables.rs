@@ -1,7 +1,8 @@
 //! Tables in the documents are those of the committed results and of the code.
 //!
 //! `<!-- table of FILE | column; … | row; … -->` and `<!-- end of table -->` enclose columns of FILE's first table, in the order given,
-//! and of its rows those whose first cell is listed, or all where the third part is absent. `PEELNET_UPDATE=1` writes them again.
+//! and of its rows those whose first cell is listed, or all where the third part is absent. `column @ MACHINE` is that of the same file of
+//! another machine. `PEELNET_UPDATE=1` writes them again.
 //! `<!-- table of columns -->` and `<!-- end of table -->` enclose a list of the columns of [`peelnet_dataset::Column`];
 //! with `effects` the table of [`peelnet_scene::EFFECTS`].
 
@@ -49,36 +50,52 @@ fn table(marker: &str) -> String {
         return effects();
     }
     let parts: Vec<&str> = marker.split(" | ").map(str::trim).collect();
-    let text = read(parts[0]);
-    let lines: Vec<Vec<&str>> = text
-        .lines()
-        .skip_while(|line| !line.starts_with('|'))
-        .take_while(|line| line.starts_with('|'))
-        .map(cells)
-        .collect();
-    let columns: Vec<usize> = parts[1]
-        .split("; ")
-        .map(|name| {
-            let found = lines[0].iter().position(|cell| *cell == name);
-            found.unwrap_or_else(|| panic!("{}: no column {name:?}", parts[0]))
-        })
-        .collect();
-    let row = |cells: &Vec<&str>| {
-        let chosen: Vec<&str> = columns.iter().map(|&c| cells[c]).collect();
-        format!("| {} |\n", chosen.join(" | "))
+    let file = parts[0];
+    let columns: Vec<Column> = parts[1].split("; ").map(|c| column(file, c)).collect();
+    let names: Vec<String> = match parts.get(2) {
+        None => columns[0].cells[2..].iter().map(|c| c.0.clone()).collect(),
+        Some(names) => names.split("; ").map(str::to_owned).collect(),
     };
-    // The header and its rule.
-    let mut out: String = lines[..2].iter().map(row).collect();
-    match parts.get(2) {
-        None => out.extend(lines[2..].iter().map(row)),
-        Some(names) => {
-            for name in names.split("; ") {
-                let found = lines[2..].iter().find(|cells| cells[0] == name);
-                out += &row(found.unwrap_or_else(|| panic!("{}: no row {name:?}", parts[0])));
-            }
-        }
+    let line = |cell: &dyn Fn(&Column) -> String| {
+        let cells: Vec<String> = columns.iter().map(cell).collect();
+        format!("| {} |\n", cells.join(" | "))
+    };
+    let mut out = line(&|c| c.title.clone()) + &line(&|c| c.cells[1].1.clone());
+    for name in names {
+        out += &line(&|c| {
+            let found = c.cells[2..].iter().find(|cell| cell.0 == name);
+            let missing = || panic!("{file}, {}: no row {name:?}", c.title);
+            found.unwrap_or_else(missing).1.clone()
+        });
     }
     out
+}
+
+/// A column of a table: its title, and of every line the first cell and the column's, the heading and its rule among them.
+struct Column {
+    title: String,
+    cells: Vec<(String, String)>,
+}
+
+fn column(file: &str, text: &str) -> Column {
+    let (name, file) = match text.split_once(" @ ") {
+        None => (text, file.to_owned()),
+        Some((name, machine)) => {
+            let own = file.split('/').nth(2).expect("docs/results/MACHINE/…");
+            (name, file.replace(own, machine))
+        }
+    };
+    let page = read(&file);
+    let lines = page.lines().skip_while(|line| !line.starts_with('|'));
+    let lines = lines.take_while(|line| line.starts_with('|')).map(cells);
+    let lines: Vec<Vec<&str>> = lines.collect();
+    let place = lines[0].iter().position(|cell| *cell == name);
+    let place = place.unwrap_or_else(|| panic!("{file}: no column {name:?}"));
+    let cell = |cells: &Vec<&str>| (cells[0].to_owned(), cells[place].to_owned());
+    Column {
+        title: text.replace(" @ ", ", "),
+        cells: lines.iter().map(cell).collect(),
+    }
 }
 
 /// A page with every table made again, and how many there are.

@@ -90,11 +90,8 @@ pub fn bench_watched(
     let views: usize = scenes.iter().map(left).sum();
     // The exact method is drawn whether it is in the plan or not.
     let exact = usize::from(!plan.methods.contains(&exact_method()));
-    // The compared frame, and where any are timed one more to warm up.
-    let frames_of_each = match plan.frames {
-        0 => 1,
-        n => n as usize + 2,
-    };
+    // The compared frame, too; those that warm up are not counted.
+    let frames_of_each = plan.frames as usize + 1;
     let total = (views * (plan.methods.len() + exact) * frames_of_each) as u64;
     let mut watch = Watch::new(total, stop, report);
     for scene in scenes {

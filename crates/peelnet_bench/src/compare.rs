@@ -331,8 +331,7 @@ fn draw(
     Ok(rows)
 }
 
-/// Times the view, all methods in turn: median, least and 90th percentile of a method's frames; passes and bytes as they were timed. Until
-/// then the methods drew images, so the first frame of each warms up.
+/// Times the view, all methods in turn: median, least and 90th percentile of a method's frames; passes and bytes as they were timed.
 fn time(
     stage: &Stage<'_>,
     frames: u32,
@@ -345,7 +344,7 @@ fn time(
     let timed = entries.iter_mut().zip(rows);
     let timed = timed.filter_map(|(e, row)| Some(((stage, e.ready.as_mut()?), row)));
     let (mut ready, rows): (Vec<_>, Vec<_>) = timed.unzip();
-    let frames = in_turn(&mut ready, &stage.scene.views[view], 1, frames, watch)?;
+    let frames = in_turn(&mut ready, &stage.scene.views[view], frames, watch)?;
     for (row, frames) in rows.into_iter().zip(&frames) {
         let times = || frames.iter().map(method_ms);
         row.time_ms = percentile(times(), 0.5);

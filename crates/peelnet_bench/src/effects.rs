@@ -21,7 +21,7 @@ use std::{
 pub struct Settings {
     pub method: MethodSpec,
     pub size: [u32; 2],
-    /// Timed frames; one more warms up.
+    /// Timed frames.
     pub frames: u32,
 }
 
@@ -99,7 +99,7 @@ fn stages<'s>(
     scenes.iter().map(stage).collect()
 }
 
-/// Median times of frames that are drawn in turn; the first of each warms up.
+/// Median times of frames that are drawn in turn.
 fn times(
     mut stages: Vec<(Stage<'_>, Ready)>,
     camera: &Camera,
@@ -109,7 +109,7 @@ fn times(
     let mut report = |_: Progress| {};
     let mut unseen = Watch::new(0, &never, &mut report);
     let all = stages.iter_mut().map(|(stage, ready)| (&*stage, ready));
-    let frames = in_turn(&mut all.collect::<Vec<_>>(), camera, 1, count, &mut unseen)?;
+    let frames = in_turn(&mut all.collect::<Vec<_>>(), camera, count, &mut unseen)?;
     // The opaque surfaces have effects too.
     let ms = |f: &Profile| milliseconds(&f.times).unwrap_or(f.wall_micros / 1e3);
     let median = |all: &Vec<Profile>| percentile(all.iter().map(ms), 0.5).unwrap_or_default();

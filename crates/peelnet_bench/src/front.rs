@@ -77,7 +77,7 @@ pub fn untimed<'a>(rows: &Rows<'a>) -> Vec<(&'a str, &'static str)> {
 pub fn points(rows: &Rows<'_>, kind: Mean) -> Vec<Point> {
     let rows = rows.common();
     let time = |of: &Rows<'_>| match kind {
-        Mean::Worst => of.0.iter().filter_map(|r| r.time_ms).reduce(f64::max),
+        Mean::Worst => of.0.iter().filter_map(|r| r.frame_ms()).reduce(f64::max),
         Mean::Geometric | Mean::Arithmetic => of.time_ms(),
     };
     let base = time(&rows.of_method(BASE));
@@ -159,7 +159,7 @@ mod tests {
                 let mut r = row(scene, method, 0.0);
                 // Another factor on every scene leaves ratios of geometric means as they are.
                 r.mse_linear = mse * [1.0, 4.0][k];
-                r.time_ms = Some(ms * [1.0, 9.0][k]);
+                r.time_ms_min = Some(ms * [1.0, 9.0][k]);
                 rows.push(r);
             }
         }

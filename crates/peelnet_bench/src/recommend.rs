@@ -190,7 +190,7 @@ mod tests {
         scene.views.truncate(2);
         let of_view = |view, method| Row {
             view,
-            time_ms: Some(1.0),
+            time_ms_min: Some(1.0),
             scene_content: scene.content.clone(),
             ..row(&scene.name, method, 1.0)
         };

@@ -91,6 +91,11 @@ const MOST_CELLS: usize = 1 << 18;
 const LARGEST: f64 = 1e80;
 
 impl Row {
+    /// What a frame takes: the least of its times. What else a machine does, and a GPU whose clock has not risen yet, only add to it.
+    pub fn frame_ms(&self) -> Option<f64> {
+        self.time_ms_min
+    }
+
     /// Whether a measurement can have these values; an error names the field that it cannot.
     fn check(&self) -> Result<(), String> {
         let fields =

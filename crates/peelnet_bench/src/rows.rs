@@ -152,9 +152,9 @@ impl<'a> Rows<'a> {
         mean(self.values(value)?)
     }
 
-    /// Geometric mean of the median frame times.
+    /// Geometric mean of the frame times.
     pub fn time_ms(&self) -> Option<f64> {
-        geometric_mean(self.values(|r| r.time_ms)?)
+        geometric_mean(self.values(Row::frame_ms)?)
     }
 
     /// Geometric mean of `mse_linear`, each at least [`EXACT_MSE`], of the views in which any method errs.
@@ -259,7 +259,7 @@ pub(crate) mod tests {
             for (method, mse, ms) in [(WEIGHTED, 16.0, 1.0), (MOMENTS, 4.0, 2.0), ("x", mine, 3.0)]
             {
                 let mut r = row(scene, method, 65025.0 * mse);
-                r.time_ms = Some(ms);
+                r.time_ms_min = Some(ms);
                 rows.push(r);
             }
         }
@@ -286,7 +286,7 @@ pub(crate) mod tests {
             ("tinted", "x", 1.0, 0.1),
         ] {
             rows.push(Row {
-                time_ms: Some(ms),
+                time_ms_min: Some(ms),
                 ..row(scene, method, mse)
             });
         }

@@ -107,7 +107,7 @@ pub fn measure(
             });
         }
         let mut all: Vec<_> = ready.iter_mut().map(|(r, _)| (&stage, r)).collect();
-        let profiles = in_turn(&mut all, camera, 0, frames, &mut watch)?;
+        let profiles = in_turn(&mut all, camera, frames, &mut watch)?;
         for ((ready, bytes_per_pixel), profiles) in ready.into_iter().zip(&profiles) {
             rows.push(Growth {
                 method: ready.name,

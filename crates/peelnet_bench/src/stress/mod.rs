@@ -176,7 +176,7 @@ fn rows(
     let all = findings.all.iter();
     all.map(|(&(i, property), finding)| {
         let method = &subjects[i].method;
-        let failure = KnownFailure::find(method, case.id, property);
+        let failure = KnownFailure::find(method, case.id, property, is_llvmpipe(adapter));
         let (result, reason) = match (finding.holds(), failure) {
             (true, Some(failure)) if strict && is_llvmpipe(adapter) => {
                 let reason = format!("holds, but is a known failure: {}", failure.reason);

@@ -146,7 +146,7 @@ impl Subject {
     ///
     /// A sum of `n` terms that are not negative errs by `n` roundings of itself, and so does a product, whatever their order: two
     /// orders differ by twice as much. The colour is a quotient of two sums times `1 − T`, plus `T C_0`: its first part changes by
-    /// four times `n` roundings of what it shows, and an error of `T` moves both parts. What is reconstructed from statistics adds its
+    /// four times `n` roundings of what it shows, and an error of `T` moves both parts. `1 − T` rounds once more, in 32 bits. What is reconstructed from statistics adds its
     /// own: a share of the absorbance, and `e^−b·share` changes by `b` times as much at most.
     fn order_limits(&self, kind: &Kind, shown: f64) -> [f64; 2] {
         if self.guarantees.sorted {
@@ -158,7 +158,8 @@ impl Subject {
             return [4.0 * n * self.rounding() * kind.terms(); 2];
         }
         let b = kind.absorbance.max(1.0);
-        let product = 2.0 * (n + 1.0) * self.rounding() * kind.transmittance * b;
+        let one_less = peelnet_core::tolerance::UNIT_ROUNDOFF;
+        let product = 2.0 * (n + 1.0) * self.rounding() * kind.transmittance * b + one_less;
         let moved = self.reconstruction(n) * b;
         let color = (4.0 * n * self.rounding() + moved) * shown + product * (kind.mean + shown);
         [color, product]
@@ -392,9 +393,11 @@ mod tests {
         let [full, half] = ["f32", "f16"].map(|t| limits(&format!("wboit-eq7:targets={t}"))[0]);
         assert!(half > 100.0 * full, "{half} {full}");
         assert_eq!(limits("abuffer"), [0.0; 2]);
-        // Four roundings of what is shown and four of the statistics, and four of a transmittance of one half that moves 1 and 1 of light.
+        // Four roundings of what is shown and four of the statistics, four of a transmittance of one half that moves 1 and 1 of light, and so does one
+        // of its difference from 1.
         let full = subject("wboit-eq7:targets=f32").order_limits(&kind(1, 1.0), 1.0)[0];
-        let expected = (4.0 + 4.0 + 4.0 * 0.5 * 2.0) * peelnet_core::tolerance::UNIT_ROUNDOFF;
+        let expected =
+            (4.0 + 4.0 + (4.0 * 0.5 + 1.0) * 2.0) * peelnet_core::tolerance::UNIT_ROUNDOFF;
         assert!((full - expected).abs() < 1e-12, "{full}");
     }
 

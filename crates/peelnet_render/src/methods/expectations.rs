@@ -190,7 +190,8 @@ impl fmt::Display for Property {
 
 /// A property that a method does not have in some stress cases.
 ///
-/// They were listed on Mesa's software rasteriser. One that depends on how an adapter rounds or blends may hold on another.
+/// They were listed on Mesa's software rasteriser; those that [are elsewhere](KnownFailure::is_elsewhere) on an NVIDIA H200. One that depends on
+/// how an adapter rounds or blends may hold on another.
 #[derive(Clone, Copy, Debug)]
 pub struct KnownFailure {
     /// The property that does not hold.
@@ -199,6 +200,8 @@ pub struct KnownFailure {
     cases: &'static str,
     /// The parameters with which it does not hold.
     pub when: fn(&MethodSpec) -> bool,
+    /// It was seen on other adapters than the software rasteriser, where it is none that is known.
+    pub is_elsewhere: bool,
     /// Why, with its source.
     pub reason: &'static str,
 }
@@ -209,11 +212,17 @@ impl KnownFailure {
         self.cases.split_whitespace()
     }
 
-    /// The failure that is known of a method's property in a case.
-    pub fn find(method: &MethodSpec, case: &str, property: Property) -> Option<&'static Self> {
+    /// The failure that is known of a method's property in a case, on Mesa's software rasteriser or on other adapters.
+    pub fn find(
+        method: &MethodSpec,
+        case: &str,
+        property: Property,
+        on_software: bool,
+    ) -> Option<&'static Self> {
         let mut known = method.method().expectations.known_failures.iter();
         known.find(|failure| {
             failure.property == property
+                && !(failure.is_elsewhere && on_software)
                 && failure.cases().any(|c| c == case)
                 && (failure.when)(method)
         })
@@ -225,6 +234,7 @@ impl KnownFailure {
             property,
             cases,
             when: |_| true,
+            is_elsewhere: false,
             reason,
         }
     }
@@ -232,6 +242,14 @@ impl KnownFailure {
     /// The same failure with some parameters only.
     pub(crate) const fn when(self, when: fn(&MethodSpec) -> bool) -> Self {
         Self { when, ..self }
+    }
+
+    /// The same failure on other adapters than the software rasteriser.
+    pub(crate) const fn elsewhere(self) -> Self {
+        Self {
+            is_elsewhere: true,
+            ..self
+        }
     }
 
     /// What lies behind nearly opaque layers shows.

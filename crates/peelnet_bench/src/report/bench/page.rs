@@ -61,8 +61,8 @@ pub(super) fn page(results: &Results<Bench>, folder: &Path) -> Result<String, Ev
         p.note { "Milliseconds, geometric means over scenes and views." }
         (passes(rows, &all).html("text", |_| false))
         p.note {
-            "Times are medians of frames that were drawn method after method in turn onto a 16-bit target, over its background, measured by \
-             the GPU's timestamps where the adapter has them. They include sorting on the CPU, and not the pass that draws background and \
+            "A time is the least of frames that were drawn method after method in turn onto a 16-bit target, over its background, measured by \
+             the GPU's timestamps where the adapter has them. Times include sorting on the CPU, and not the pass that draws background and \
              opaque surfaces. Time at equal error and error at equal time: how far a method is behind the front, interpolated between its \
              points in logarithms. Errors are against abuffer. SSIM: image-compare, windows of 8×8 on 8-bit luma. ꟻLIP: \
              nv-flip, 67 pixels per degree. T error: mean difference between the estimated and the exact transmittance, over the fragments \
@@ -249,7 +249,7 @@ mod tests {
             (front::BASE, 90.0, 1.0),
         ] {
             let mut r = row("s<1>", method, mse);
-            r.time_ms = Some(ms);
+            r.time_ms_min = Some(ms);
             r.time_by_pass = format!("gather={ms} resolve=0.1");
             rows.push(r);
             let gray = (mse * 2.0) as u8;

@@ -96,7 +96,7 @@ fn stages(stages: &[Stage]) -> Table {
 fn costs(rows: &Rows<'_>) -> Table {
     let time = |method: &str| {
         let own = rows.of_method(method).0.into_iter();
-        let mut times: Vec<f64> = own.filter_map(|r| r.time_ms).collect();
+        let mut times: Vec<f64> = own.filter_map(Row::frame_ms).collect();
         times.sort_by(f64::total_cmp);
         times.get(times.len() / 2).copied()
     };
@@ -107,7 +107,7 @@ fn costs(rows: &Rows<'_>) -> Table {
             ("method", &|m| (*m).to_owned()),
             ("most passes", &|m| bench::page::most_passes(rows, m)),
             ("most bytes a pixel", &|m| format!("{:.0}", bytes(m).most)),
-            ("GPU ms (median frame)", &|m| number(time(m), 1)),
+            ("GPU ms (median view)", &|m| number(time(m), 1)),
         ],
     )
 }
@@ -179,7 +179,7 @@ mod tests {
         ];
         let mut results = Results::of_rows(machine(), "peelnet run --out \"a&b\"", rows.clone());
         results.measured.trained_on = vec!["cups".to_owned()];
-        rows[3].time_ms = Some(3.0);
+        rows[3].time_ms_min = Some(3.0);
         results.measured.showcase = vec![rows.swap_remove(3)];
         let losses = [Line::new("<training>", [(1.0, 0.5), (2.0, 0.25)])];
         let chart = line_chart(&losses, "epoch", "loss", Scale::Linear);

@@ -17,7 +17,7 @@ pub(super) const METHOD: Expectations = Expectations {
     estimate: Some(learned_transmittances),
     known_failures: &[
         KnownFailure::swallowed("alpha-tiny deep near-overflow"),
-        KnownFailure::unsettled(Property::Order, "deep lines near-overflow"),
+        KnownFailure::unsettled(Property::Order, "deep near-overflow"),
         KnownFailure::unsettled(Property::Transmittance, "isolated"),
         KnownFailure::translucent(
             "the network's own error; it reads the same moments (Tsopouridis et al. 2024)",

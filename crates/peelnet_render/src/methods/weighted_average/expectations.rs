@@ -11,12 +11,6 @@ pub(super) const METHOD: Expectations = Expectations {
         ),
         KnownFailure::swallowed("alpha-tiny deep near-overflow"),
         KnownFailure::reordered("lines"),
-        KnownFailure::new(
-            Property::Order,
-            "apart",
-            "its coverage is a power of a mean, which magnifies a rounding of it by the number of layers",
-        )
-        .when(|s| !half_sums(s)),
         KnownFailure::BLIND,
     ],
     ..Expectations::DEFAULT
