@@ -174,3 +174,204 @@ impl Window {
 
 /// The weight of a pixel lies behind `PixelColumns::fixed`.
 const WEIGHT: usize = EXACT + 3;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::draws::Stream;
+    use crate::network::Shape;
+    use crate::table::PixelColumns;
+    use peelnet_core::{mlp::Activation, tolerance::UNIT_ROUNDOFF};
+    use peelnet_model::Recipe;
+
+    const EXAMPLES: usize = 6;
+    const ROWS_OF_A_PIXEL: usize = 5;
+
+    /// Random examples with the columns of a recipe: any numbers of the size of real ones have a gradient.
+    fn examples(recipe: Recipe) -> TrainingData {
+        let mut random = Stream::Split.random(7);
+        let mut column = |rows: usize, least: f32, most: f32| -> Vec<f32> {
+            (0..rows).map(|_| random.between(least, most)).collect()
+        };
+        let is_pixels = recipe.loss.is_some();
+        let rows = EXAMPLES * if is_pixels { ROWS_OF_A_PIXEL } else { 1 };
+        let mut data = TrainingData::for_recipe(recipe);
+        data.inputs.fill_with(|| column(rows, -1.0, 1.0));
+        data.targets.fill_with(|| column(rows, 0.0, 0.5));
+        let weights = data.weights.iter_mut();
+        weights.for_each(|all| *all = column(EXAMPLES, 0.5, 2.0));
+        data.pixels = is_pixels.then(|| PixelColumns {
+            first: (0..rows as u32).step_by(ROWS_OF_A_PIXEL).collect(),
+            rows: std::array::from_fn(|k| match k {
+                RESIDUAL => column(rows, 0.1, 3.0),
+                ALPHA => column(rows, 0.1, 1.0),
+                _ => column(rows, 0.0, 2.0),
+            }),
+            fixed: std::array::from_fn(|_| column(EXAMPLES, 0.1, 1.0)),
+        });
+        data
+    }
+
+    /// The network in 64 bits, from the order of parameters that the model file has.
+    fn forward(shape: &Shape, parameters: &[f64], input: Vec<f64>) -> Vec<f64> {
+        let last = shape.widths.len() - 2;
+        let mut rest = parameters;
+        let mut x = input;
+        for (k, w) in shape.widths.windows(2).enumerate() {
+            let (weights, after) = rest.split_at(w[0] * w[1]);
+            let (bias, after) = after.split_at(w[1]);
+            rest = after;
+            let sum = |(row, b): (&[f64], &f64)| {
+                let products = row.iter().zip(&x).map(|(w, x)| w * x);
+                products.sum::<f64>() + b
+            };
+            let sums = weights.chunks_exact(w[0]).zip(bias).map(sum);
+            let activation = if k == last {
+                shape.output
+            } else {
+                shape.hidden
+            };
+            x = sums
+                .map(|y| match activation {
+                    Activation::Relu => y.max(0.0),
+                    Activation::Sigmoid => 1.0 / (1.0 + (-y).exp()),
+                    Activation::Identity => y,
+                })
+                .collect();
+        }
+        x
+    }
+
+    /// The loss of an example in 64 bits, written from the text at the head of this file.
+    fn loss(
+        config: &Config,
+        shape: &Shape,
+        data: &TrainingData,
+        parameters: &[f64],
+        example: usize,
+    ) -> f64 {
+        let value = |column: &Vec<f32>, at: usize| f64::from(column[at]);
+        let answer = |row: usize| {
+            let input = data.inputs.iter().map(|c| value(c, row)).collect();
+            forward(shape, parameters, input)
+        };
+        let weight = data.weights.as_ref().map_or(1.0, |w| value(w, example));
+        let Some(pixels) = &data.pixels else {
+            let errors = answer(example).into_iter().zip(&data.targets);
+            let squares = errors.map(|(y, target)| (y - value(target, example)).powi(2));
+            return weight * squares.sum::<f64>();
+        };
+        let rows = data.rows_of(example as u32);
+        let rows = rows.map(|r| r as usize).collect::<Vec<_>>();
+        let fixed = |k: usize| value(&pixels.fixed[k], example);
+        let through = |row: usize| match config.recipe.output {
+            Output::Transmittance => answer(row)[0],
+            _ => (-value(&pixels.rows[RESIDUAL], row) * answer(row)[0]).exp(),
+        };
+        let exact = |row: usize| value(&data.targets[0], row);
+        let alpha = |row: usize| value(&pixels.rows[ALPHA], row);
+        let k: Vec<f64> = rows.iter().map(|&r| alpha(r) * through(r)).collect();
+        let scale =
+            fixed(LEFT) / (fixed(SUM) + f64::from(SUM_FLOOR as f32) + k.iter().sum::<f64>());
+        let both = || rows.iter().zip(&k);
+        weight
+            * match config.loss.unwrap() {
+                PixelLoss::Transmittance => rows
+                    .iter()
+                    .map(|&r| (through(r) - (exact(r) / alpha(r)).min(1.0)).powi(2))
+                    .sum(),
+                PixelLoss::WeightedTransmittance => {
+                    both().map(|(&r, k)| (k - exact(r)).powi(2)).sum::<f64>()
+                }
+                PixelLoss::Contributions => {
+                    let squares = both().map(|(&r, k)| (k * scale - exact(r)).powi(2));
+                    squares.sum()
+                }
+                PixelLoss::Image => {
+                    let channel = |c: usize| {
+                        let color = |r: usize| value(&pixels.rows[COLOR + c], r);
+                        let seen = both().map(|(&r, k)| (k * scale - exact(r)) * color(r));
+                        let ends = fixed(KNOWN + c) * scale - fixed(EXACT + c);
+                        (seen.sum::<f64>() + ends).powi(2)
+                    };
+                    (0..3).map(channel).sum::<f64>() / 3.0
+                }
+            }
+    }
+
+    /// Central differences of the loss in 64 bits, of every recipe and every loss. Their steps are too short for a ReLU to switch within
+    /// one here; the roundings of both losses, each 2⁻⁵² of it for every step of a chain of sixteen or so, are magnified by them.
+    ///
+    /// An example's gradient is a chain of products and sums of which each rounds once, forwards and backwards, through three layers of at
+    /// most 32 terms, five rows and thirty operations of the loss: 256 unit roundoffs of it at most.
+    #[test]
+    fn gradients_of_every_recipes_losses_are_difference_quotients() {
+        const STEP: f64 = 1e-6;
+        let device = Device::flex();
+        for recipe in Recipe::ALL {
+            let losses: &[Option<PixelLoss>] = match recipe.loss {
+                None => &[None],
+                Some(_) => &[
+                    Some(PixelLoss::Image),
+                    Some(PixelLoss::Contributions),
+                    Some(PixelLoss::WeightedTransmittance),
+                    Some(PixelLoss::Transmittance),
+                ],
+            };
+            for &pixel_loss in losses {
+                let config = Config {
+                    loss: pixel_loss,
+                    ..Config::for_recipe(recipe)
+                };
+                let at = format!("{recipe}, {pixel_loss:?}");
+                let data = examples(recipe);
+                let shape = Shape::new(&config);
+                let parameters = shape.initial(3);
+                let count = parameters.len();
+                let flat = TensorData::new(parameters.clone(), [count]);
+                let network = Network::tracked(&shape, &Tensor::from_data(flat, &device));
+                let same = Normalisation {
+                    offset: 0.0,
+                    scale: 1.0,
+                    min: -1.0,
+                    max: 1.0,
+                    constant: false,
+                };
+                let normalisation = vec![same; data.inputs.len()];
+                let order: Vec<u32> = (0..EXAMPLES as u32).collect();
+                let window = Window::new(&data, &order, &normalisation, &device);
+                let sum = window.loss_sum(&network, 0..EXAMPLES, &config);
+                let found: Vec<f32> = network.gradient(sum).into_data().try_into_vec().unwrap();
+                let parameters: Vec<f64> = parameters.into_iter().map(f64::from).collect();
+                let all = |parameters: &[f64]| -> Vec<f64> {
+                    let each = 0..EXAMPLES;
+                    each.map(|e| loss(&config, &shape, &data, parameters, e))
+                        .collect()
+                };
+                let noise = 16.0 * f64::EPSILON / STEP;
+                let limit = 256.0 * UNIT_ROUNDOFF;
+                let total: f64 = all(&parameters).iter().sum();
+                let error = (f64::from(found[count]) / total - 1.0).abs();
+                assert!(error <= limit, "{at}: {} for {total}", found[count]);
+                for i in 0..count {
+                    let moved = |by: f64| {
+                        let mut moved = parameters.clone();
+                        moved[i] += by;
+                        all(&moved)
+                    };
+                    let pairs = moved(STEP).into_iter().zip(moved(-STEP));
+                    let terms: Vec<f64> = pairs.map(|(a, b)| (a - b) / (2.0 * STEP)).collect();
+                    let expected: f64 = terms.iter().sum();
+                    let scale: f64 = terms.iter().map(|t| t.abs()).sum();
+                    let error = (f64::from(found[i]) - expected).abs();
+                    let allowed = limit * scale + noise * total;
+                    assert!(
+                        error <= allowed,
+                        "{at}: parameter {i}, {} for {expected}",
+                        found[i]
+                    );
+                }
+            }
+        }
+    }
+}
