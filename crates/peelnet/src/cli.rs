@@ -213,6 +213,8 @@ pub struct SealArgs {
   peelnet train d1 d2 --out m.safetensors --epochs 40 --loss-curve loss.csv --loss-curve loss.svg
   peelnet train d --out m.safetensors --resume          resume after Ctrl-C, with the same result
 
+On a terminal both losses are drawn while it trains; MODEL.checkpoint/loss.csv has them, too, up to five seconds ago.
+
 Rows of scenes that are marked held-out are never trained on.")]
 pub struct TrainArgs {
     /// Dataset folders or addresses (s3://, gs://, az://)

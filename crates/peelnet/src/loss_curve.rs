@@ -3,13 +3,11 @@
 use crate::Failure;
 use peelnet_bench::chart::{Line, Scale, Svg, line_chart};
 use peelnet_core::files::{Kind, holds, shown, write_whole};
-use peelnet_train::EpochReport;
+use peelnet_train::{EpochReport, HISTORY_KIND, history_csv};
 use std::path::Path;
 
 /// The name of the picture's vertical axis.
 const LOSS: &str = "mean loss";
-
-const HEADINGS: &str = "epoch,train_loss,held_out_loss,seconds,rows_per_s";
 
 /// By what a loss curve is known, whose ending chooses its form: .csv a table, .svg a picture of both losses over the epochs.
 ///
@@ -23,17 +21,13 @@ pub fn curve_kind(path: &Path) -> Result<Kind, Failure> {
 type Form = (Kind, fn(&[EpochReport]) -> String);
 
 fn form(path: &Path) -> Result<Form, Failure> {
-    let csv_kind = Kind {
-        name: "a loss curve (CSV)",
-        is: |head| head.starts_with(HEADINGS.as_bytes()),
-    };
     let svg_kind = Kind {
         name: "a loss curve (SVG)",
         // Other charts stay.
         is: |head| Svg::is_ours(head) && holds(head, LOSS.as_bytes()),
     };
     match path.extension().and_then(|e| e.to_str()) {
-        Some(e) if e.eq_ignore_ascii_case("csv") => Ok((csv_kind, csv)),
+        Some(e) if e.eq_ignore_ascii_case("csv") => Ok((HISTORY_KIND, history_csv)),
         Some(e) if e.eq_ignore_ascii_case("svg") => Ok((svg_kind, |h| curve_chart(h).on_white())),
         _ => Err(Failure::wrong(format!(
             "{}: a loss curve ends in .csv or .svg",
@@ -49,18 +43,6 @@ fn form(path: &Path) -> Result<Form, Failure> {
 pub fn write_curve(path: &Path, history: &[EpochReport]) -> Result<(), Failure> {
     let text = form(path)?.1(history);
     write_whole(path, text.as_bytes()).map_err(|e| Failure::failed(format!("{}: {e}", shown(path))))
-}
-
-fn csv(history: &[EpochReport]) -> String {
-    let mut table = format!("{HEADINGS}\n");
-    for row in history {
-        let held_out = row.held_out_loss.map_or(String::new(), |l| l.to_string());
-        table += &format!(
-            "{},{},{held_out},{:.4},{:.0}\n",
-            row.epoch, row.train_loss, row.seconds, row.rows_per_s
-        );
-    }
-    table
 }
 
 /// Both losses over the epochs, on a logarithmic axis.

@@ -11,14 +11,14 @@ use serde::{Deserialize, Serialize};
 use crate::config::{Config, MAX_EPOCHS, Schedule};
 use crate::error::{TrainError, beside, io};
 use crate::optimizer::Adam;
-use crate::report::EpochReport;
+use crate::report::{EpochReport, HISTORY_KIND};
 
 /// 2: the order of rows and the split come from another generator.
 const VERSION: u32 = 2;
 const KEY: &str = "peelnet_training_state";
 
 /// The files of a checkpoint's folder, and by what they are known.
-pub const FILES: [(&str, Kind); 3] = [
+pub const FILES: [(&str, Kind); 4] = [
     (
         "state.safetensors",
         Kind {
@@ -28,6 +28,7 @@ pub const FILES: [(&str, Kind); 3] = [
     ),
     ("best.safetensors", peelnet_model::KIND),
     ("last.safetensors", peelnet_model::KIND),
+    ("loss.csv", HISTORY_KIND),
 ];
 
 /// What a training that begins anew replaces: not the hours of one that was interrupted.

@@ -56,8 +56,8 @@
 //! # Files
 //!
 //! For `out/net.safetensors` the folder `out/net.safetensors.checkpoint/` holds `state.safetensors` (everything a resumed run
-//! needs) and two model files, `last.safetensors` and `best.safetensors` (lowest held-out error so far). It stays after
-//! a finished run, so that a resumed run can add epochs; deleting it is safe. Every file is replaced as a whole. As long as a run
+//! needs), two model files, `last.safetensors` and `best.safetensors` (lowest held-out error so far), and the losses of every epoch,
+//! `loss.csv`, all written again every five seconds. It stays after a finished run, so that a resumed run can add epochs; deleting it is safe. Every file is replaced as a whole. As long as a run
 //! lasts, `out/net.safetensors.lock` is locked, so that a second run cannot write to the same files; see [`OutputLock`].
 
 mod checkpoint;
@@ -85,7 +85,7 @@ pub use error::TrainError;
 pub use loader::held_out_errors;
 pub use lock::OutputLock;
 pub use peelnet_model::PixelLoss;
-pub use report::{End, EpochReport, Outcome};
+pub use report::{End, EpochReport, HISTORY_KIND, Outcome, history_csv};
 pub use table::{
     ALPHA, COLOR, DataSplit, EXACT, KNOWN, LEFT, PixelColumns, RESIDUAL, SUM, TrainingData,
     UsedRows,

@@ -2,8 +2,29 @@
 
 use std::path::PathBuf;
 
-use peelnet_core::files::thousands;
+use peelnet_core::files::{Kind, thousands};
 use peelnet_model::Model;
+
+const HEADINGS: &str = "epoch,train_loss,held_out_loss,seconds,rows_per_s";
+
+/// By what the table of [`history_csv`] is known.
+pub const HISTORY_KIND: Kind = Kind {
+    name: "a loss curve (CSV)",
+    is: |head| head.starts_with(HEADINGS.as_bytes()),
+};
+
+/// The epochs as a table, as CSV: a line for each.
+pub fn history_csv(history: &[EpochReport]) -> String {
+    let mut table = format!("{HEADINGS}\n");
+    for row in history {
+        let held_out = row.held_out_loss.map_or(String::new(), |l| l.to_string());
+        table += &format!(
+            "{},{},{held_out},{:.4},{:.0}\n",
+            row.epoch, row.train_loss, row.seconds, row.rows_per_s
+        );
+    }
+    table
+}
 
 /// One finished epoch.
 #[derive(Clone, Debug, PartialEq)]

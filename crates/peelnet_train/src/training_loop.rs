@@ -7,6 +7,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use burn::tensor::{Device, Tensor};
+use peelnet_core::files::write_whole;
 use peelnet_dataset::Subset;
 use peelnet_model::{Input, Losses, Metadata, Model};
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
@@ -18,7 +19,7 @@ use crate::lock::OutputLock;
 use crate::loss::Window;
 use crate::network::{Network, Shape};
 use crate::optimizer::Adam;
-use crate::report::{End, EpochReport, Outcome};
+use crate::report::{End, EpochReport, Outcome, history_csv};
 use crate::sampler::{Feed, by_subset};
 use crate::table::TrainingData;
 
@@ -315,7 +316,7 @@ impl Run<'_> {
         ))
     }
 
-    /// Saves the state and the two model files made from it.
+    /// Saves the state, the two model files made from it and the losses of every epoch.
     fn save(&self, progress: &Progress) -> Result<(), TrainError> {
         progress.save(&self.folder, self.config, &self.fingerprint)?;
         let history = &progress.history;
@@ -323,6 +324,10 @@ impl Run<'_> {
         let best = progress.best.iter();
         let best = best.map(|(epoch, best)| ("best", *epoch, best));
         let models = best.chain([last]).filter(|_| !history.is_empty());
+        if !history.is_empty() {
+            let path = self.folder.join(checkpoint::FILES[3].0);
+            write_whole(&path, history_csv(history).as_bytes()).map_err(io(&path))?;
+        }
         for (name, epoch, parameters) in models {
             let path = self.folder.join(name).with_extension("safetensors");
             self.model(epoch, parameters, history).save(path)?;

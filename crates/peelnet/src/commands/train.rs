@@ -1,6 +1,6 @@
 use super::{Context, json_path};
 use crate::cli::TrainArgs;
-use crate::progress::Bar;
+use crate::progress::{Bar, Curves};
 use peelnet::Failure;
 use peelnet::fit::{self, ModelPlace, Step};
 use peelnet_core::files::{counted, printable, shown, thousands};
@@ -112,18 +112,18 @@ pub(super) fn fit(
     let rows = datasets.iter().map(Dataset::rows).sum();
     let read = || Bar::new(console, "read", rows);
     let mut bar = config.buffer_rows.is_some().then(read);
-    let mut show = |step: Step<'_>| match (step, &bar) {
-        (Step::Read(rows, of), Some(bar)) => bar.set(rows, of, String::new()),
-        (Step::Epoch(e), Some(bar)) => bar.set(e.epoch.into(), e.epochs.into(), e.progress()),
-        (Step::Ready(data), _) => {
+    let mut curves = None;
+    let mut show = |step: Step<'_>| match step {
+        Step::Read(rows, of) => bar.iter().for_each(|bar| bar.set(rows, of, String::new())),
+        Step::Epoch(epoch) => curves.iter_mut().for_each(|c: &mut Curves| c.add(epoch)),
+        Step::Ready(data) => {
             bar = None;
             say(context, config, data, &options.out);
-            bar = Some(Bar::new(console, "train", config.epochs.into()));
+            curves = Some(Curves::new(console, config.epochs));
         }
-        _ => {}
     };
     let outcome = fit::fit(config, datasets, options, loss_curves, &mut show);
-    drop(bar);
+    drop(curves);
     let outcome = outcome?;
     if outcome.end == End::Interrupted {
         let state = shown(&outcome.checkpoint);

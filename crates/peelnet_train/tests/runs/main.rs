@@ -13,7 +13,7 @@ use peelnet_dataset::{Dataset, DatasetWriter, Format, FragmentBatch, Header, Par
 use peelnet_model::Model;
 use peelnet_train::{
     CHECKPOINT_FILES, Config, End, FINISHED_STATE, Outcome, RunOptions, TrainError, TrainingData,
-    checkpoint_folder, train,
+    checkpoint_folder, history_csv, train,
 };
 
 static NEVER: AtomicBool = AtomicBool::new(false);
@@ -68,6 +68,8 @@ fn assert_resumes(config: &Config, load: &dyn Fn() -> TrainingData) {
     );
     assert!(!out.exists(), "an interrupted run leaves no finished model");
     assert!(Model::load(first.checkpoint.join("last.safetensors")).is_ok());
+    let table = || std::fs::read_to_string(checkpoint_folder(&out).join("loss.csv")).unwrap();
+    assert_eq!(table(), history_csv(&first.history));
     let state = first.checkpoint.join(CHECKPOINT_FILES[0].0);
     let is_foreign = || FINISHED_STATE.is_foreign(&state).unwrap();
     assert!(is_foreign(), "a run that begins anew would replace it");
@@ -88,6 +90,7 @@ fn assert_resumes(config: &Config, load: &dyn Fn() -> TrainingData) {
             .collect()
     };
     assert_eq!(losses(&expected), losses(&second));
+    assert_eq!(table().lines().count() as u32, config.epochs + 1);
 
     // A finished run that is resumed has nothing to do and says the same.
     let third = train(config, &load(), &resuming(&out), |_| {
@@ -101,7 +104,7 @@ fn assert_resumes(config: &Config, load: &dyn Fn() -> TrainingData) {
     // No scratch file has a name.
     let names = std::fs::read_dir(checkpoint_folder(&out)).unwrap();
     let names = names.map(|n| n.unwrap().file_name().into_string().unwrap());
-    assert!({ names }.all(|name| name.ends_with(".safetensors")));
+    assert!({ names }.all(|name| CHECKPOINT_FILES.iter().any(|(file, _)| *file == name)));
 }
 
 fn scene(name: &str, held_out: bool) -> SceneEntry {
