@@ -143,6 +143,7 @@ pub struct RunArgs {
   peelnet extract scene.toml --out d --shard 2/8        part 2 of 8, for any scheduler; all write into d
   peelnet extract scene.toml --out d --resume           what a run that was stopped left to do
   peelnet extract --synthetic 300000 --out d            no scene: synthetic fragment lists, from the seed
+  peelnet extract scene.toml --out p --preview          what it would write: p/preview.html, and no dataset
 
 DATASET is a folder: the fragment files, README.md and croissant.json, which describe them to others, and _peelnet/ with manifest.json, which
 has statistics of every column. The same seed gives the same rows and the same manifest.")]
@@ -161,6 +162,10 @@ pub struct ExtractArgs {
     /// Folder of the dataset, or its address: s3://, gs:// or az://BUCKET/PREFIX
     #[arg(long, value_name = "DATASET")]
     pub out: PathBuf,
+    /// Write no dataset, but a page into the folder --out, another one than the dataset's: preview.html, with pictures of the views, exact
+    /// numbers of rows, histograms, and about how many bytes. It takes as long as peeling
+    #[arg(long, conflicts_with_all = ["synthetic", "shard", "resume"])]
+    pub preview: bool,
     /// Frame size in pixels
     #[arg(long, value_name = "WxH", value_parser = size, default_value = "1024x768")]
     pub size: [u32; 2],
@@ -471,6 +476,7 @@ pub struct RecommendArgs {
 #[command(after_help = "Examples:
   peelnet inspect sixteen-050
   peelnet inspect d --json | jq .rows
+  peelnet inspect d --html d.html                       also a page: statistics, views, the rows of a pixel beside its picture
   peelnet inspect m.safetensors
 
 A dataset is read completely: values that follow from other rows are recomputed, and the exit code is 1 if they disagree.")]
@@ -481,4 +487,7 @@ pub struct InspectArgs {
     /// For a scene: also measure what each of its effects costs on this machine
     #[arg(long)]
     pub time: bool,
+    /// For a dataset: also write a page, one file that needs no other
+    #[arg(long, value_name = "PAGE")]
+    pub html: Option<PathBuf>,
 }

@@ -32,6 +32,9 @@ const WRONG_USAGE: &str = "
     extract --synthetic 99999999999 --out d
     extract two.toml --out d --format xml
     extract two.toml --out d --peel onion
+    extract two.toml --out d --preview --resume
+    extract two.toml --out d --preview --shard 1/2
+    extract --synthetic 9 --out d --preview
     train sound --out m --recipe huge
     train sound --out m --loss-curve loss.png
     train sound --out m --epochs 0
@@ -100,6 +103,17 @@ const REFUSED: &str = "
     1 | train nowhere --out m | nowhere: there is no such dataset & peelnet extract
     2 | train sound --out m --lr 1e30 | below 10
     2 | train sound --out m --hidden 1 | widths from 2
+    2 | inspect two.toml --html a.html | two.toml: --html is for a dataset
+    2 | inspect m.safetensors --html a.html | m.safetensors: --html is for a dataset
+    1 | inspect missing --html a.html | missing: there is no such file
+    2 | inspect sound --html sound/a.html | --html sound/a.html & dataset
+    1 | inspect sound --html notes.txt | --html notes.txt & --force
+    1 | inspect cut --html a.html | cut/fragments-00000-synthetic-v0.csv
+    2 | extract two.toml --out own --preview | --out own/preview.html & dataset
+    1 | extract two.toml --out own-preview --preview | preview.html & not a report of peelnet & --force
+    1 | extract two.toml --out s3://bucket/p --preview | is an address; name a folder
+    2 | extract two.toml --out p --size 8x8 --views 5 --preview | 1 of the 5 views
+    1 | extract stained.toml --out p --size 8x8 --preview | transmission_color
     2 | inspect sound --time | sound: --time measures a scene's effects
     2 | inspect two.toml --files-from nowhere | --files-from nowhere: is no folder
     2 | train sound --out m --lr 1e-30 | learning_rate & --lr
@@ -215,7 +229,7 @@ const ON_LINUX: &str = "";
 /// Files that a user wrote, some of which are called as ours are.
 const FOREIGN: &str = "
     notes.txt notes.png folder/notes.txt folder.png/notes.txt old.checkpoint/last.safetensors
-    own-page/report.html own-results/results.json own-rows/results.csv own-table/table.md
+    own-page/report.html own-preview/preview.html own-results/results.json own-rows/results.csv own-table/table.md
     own-chart/pareto.svg own-image/images/holiday.png";
 
 /// A mesh that would show what a file elsewhere holds.

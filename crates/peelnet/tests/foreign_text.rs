@@ -46,15 +46,20 @@ fn names_in_files_are_printed_escaped() {
         "extract s.toml --size 8x8 --out d",
         "inspect d",
         "inspect d --json",
+        "inspect d --html d.html",
+        "extract s.toml --size 8x8 --out p --preview",
         "bench s.toml --methods wboit-eq9 --frames 0 --size 8x8 --out b --json",
         "export m.safetensors --out -",
     ] {
         let shown = assert_plain(&folder.command(line).output().unwrap(), line);
-        let names_none = line.starts_with("render") || line.starts_with("extract");
+        let names_none =
+            line.starts_with("render") || line.starts_with("extract s.toml --size 8x8 --out d");
         assert!(shown || names_none, "{line}");
     }
     for file in [
         "b/report.html",
+        "d.html",
+        "p/preview.html",
         "b/table.md",
         "b/results.json",
         "b/results.csv",

@@ -12,4 +12,5 @@ mod foreign_text;
 mod fuzzed_commands;
 mod measured;
 mod outputs;
+mod pages;
 mod whole_run;

@@ -31,6 +31,10 @@ pub enum EvalError {
     Unusable(String),
     #[error("{}: is not the picture that was drawn with these rows, but one of another run; measure again, or move the folder of pictures away", .0.display())]
     OtherPicture(PathBuf),
+    #[error("{0}")]
+    Peel(#[from] peelnet_peel::PeelError),
+    #[error("{0}")]
+    Dataset(#[from] peelnet_dataset::DatasetError),
     #[error("interrupted")]
     Interrupted,
 }

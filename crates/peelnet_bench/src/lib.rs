@@ -6,6 +6,7 @@
 //! path: every frame of a moving camera and moving objects ─► rows (method × scene, and × frame)
 //! designs: fragments of a scene, composited on the CPU with each design of slabs ─► rows (design)
 //! effects, scaling ─► rows of their own
+//! preview: what an extraction would write, in figures
 //! ```
 //!
 //! [`fn@bench`] compares methods and returns a [`Row`] for each method, scene and view. [`compare`] draws every view exactly
@@ -34,6 +35,7 @@ cfg_if::cfg_if! {
         mod machine;
         mod partial;
         pub mod path;
+        pub mod preview;
         pub mod recommend;
         mod records;
         pub mod report;

@@ -88,7 +88,7 @@ fn plain(text: &str) -> String {
 }
 
 /// A number with six digits.
-fn rounded(value: f64) -> String {
+pub fn rounded(value: f64) -> String {
     let digits = match value.abs() {
         0.0 => return "0".to_owned(),
         size if (1e-4..1e7).contains(&size) => 5 - size.log10().floor() as i32,

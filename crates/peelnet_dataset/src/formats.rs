@@ -99,6 +99,24 @@ impl Format {
         })
     }
 
+    /// Bytes of the files of a part that has these rows alone. They are written into a temporary folder.
+    ///
+    /// # Errors
+    /// If they cannot be written.
+    pub fn bytes_of(self, rows: &FragmentBatch) -> Result<u64, DatasetError> {
+        let folder = tempfile::tempdir();
+        let folder = folder.map_err(DatasetError::io(&std::env::temp_dir(), "write into"))?;
+        let files = self.file_names("part").into_iter();
+        let files: Vec<PathBuf> = files.map(|name| folder.path().join(name)).collect();
+        let mut sink = self.sink(files.clone())?;
+        sink.write(rows)?;
+        sink.finish(rows.len() as u64)?;
+        files.iter().try_fold(0, |sum, file| {
+            let found = file.metadata().map_err(DatasetError::io(file, "look at"))?;
+            Ok(sum + found.len())
+        })
+    }
+
     /// Opens a part of so many rows for reading the given columns, from [`Format::files_of`] them.
     pub(crate) fn source(
         self,

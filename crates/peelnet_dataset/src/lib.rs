@@ -61,6 +61,7 @@ mod store;
 pub mod summary;
 mod writer;
 
+pub use card::rounded;
 pub use column::{
     Column, ColumnKind, ColumnSlice, ColumnValues, FragmentBatch, PeeledFragment, Typed,
 };

@@ -43,7 +43,7 @@ pub struct Summary {
     pub columns: Vec<ColumnRange>,
     /// Pixels by their number of fragments, in bins 1, 2, 3–4, 5–8, 9–16, … up to the largest.
     pub fragments_per_pixel: Vec<Bin>,
-    /// Rows by α, in bins of 0.05; the last one includes 1.
+    /// Rows by α, in bins of 0.05; the last one includes 1. Empty without rows.
     pub alpha: Vec<Bin>,
     /// The checks of the sums.
     pub checks: Vec<Check>,
@@ -132,15 +132,12 @@ impl Summary {
             summary.parts_not_checked += u64::from(lossy);
             for batch in dataset.batches_where(1 << 16, |p| p.index == part.index) {
                 let batch = batch?;
-                summary.add_ranges(&batch);
+                summary.add(&batch);
                 for pixel in batch.pixels() {
-                    summary.add_pixel(&batch, pixel, &part.files[0].name, row, lossy);
+                    summary.check_pixel(&batch, pixel, &part.files[0].name, row, lossy);
                 }
                 row += batch.len() as u64;
             }
-        }
-        if summary.rows == 0 {
-            summary.columns.clear();
         }
         Ok(summary)
     }
@@ -162,29 +159,54 @@ impl Summary {
             held_out: scene.held_out,
             rows: rows_by_scene.get(scene.name.as_str()).copied().unwrap_or(0),
         });
-        let columns = Column::ALL.map(|column| ColumnRange {
-            name: column.name().to_owned(),
-            min: f64::INFINITY,
-            max: f64::NEG_INFINITY,
-        });
-        let alpha = (0..ALPHA_BINS).map(|k| Bin {
-            from: k as f64 / ALPHA_BINS as f64,
-            to: (k + 1) as f64 / ALPHA_BINS as f64,
-            count: 0,
-        });
         Self {
             hash: manifest.hash.clone(),
             lost_fragments: manifest.lost_fragments,
             coplanar_ties: manifest.coplanar_ties,
             scenes: scenes.collect(),
-            columns: columns.into(),
-            alpha: alpha.collect(),
             checks: checks.collect(),
             ..Self::default()
         }
     }
 
+    /// Counts rows, which are whole pixels, in the figures that need no other row: rows, pixels, ranges and histograms.
+    pub fn add(&mut self, batch: &FragmentBatch) {
+        if batch.is_empty() {
+            return;
+        }
+        self.add_ranges(batch);
+        self.rows += batch.len() as u64;
+        for pixel in batch.pixels() {
+            self.pixels += 1;
+            let bin = pixel.len().next_power_of_two().ilog2() as usize;
+            let bins = &mut self.fragments_per_pixel;
+            while bins.len() <= bin {
+                let before = bins.last().map_or(0.0, |b| b.to);
+                bins.push(Bin {
+                    from: before + 1.0,
+                    to: (before * 2.0).max(1.0),
+                    count: 0,
+                });
+            }
+            bins[bin].count += 1;
+        }
+    }
+
     fn add_ranges(&mut self, batch: &FragmentBatch) {
+        if self.columns.is_empty() {
+            let column = |column: Column| ColumnRange {
+                name: column.name().to_owned(),
+                min: f64::INFINITY,
+                max: f64::NEG_INFINITY,
+            };
+            self.columns = Column::ALL.map(column).into();
+            let bin = |k: usize| Bin {
+                from: k as f64 / ALPHA_BINS as f64,
+                to: (k + 1) as f64 / ALPHA_BINS as f64,
+                count: 0,
+            };
+            self.alpha = (0..ALPHA_BINS).map(bin).collect();
+        }
         for (column, range) in Column::ALL.into_iter().zip(&mut self.columns) {
             let mut add = |value: f64| {
                 range.min = range.min.min(value);
@@ -202,7 +224,7 @@ impl Summary {
     }
 
     /// Checks the rows of one pixel. `first_row` is the number of the batch's first row.
-    fn add_pixel(
+    fn check_pixel(
         &mut self,
         batch: &FragmentBatch,
         pixel: Range<usize>,
@@ -210,21 +232,6 @@ impl Summary {
         first_row: u64,
         lossy: bool,
     ) {
-        let n = pixel.len();
-        self.rows += n as u64;
-        self.pixels += 1;
-        let bin = n.next_power_of_two().ilog2() as usize;
-        let bins = &mut self.fragments_per_pixel;
-        while bins.len() <= bin {
-            let before = bins.last().map_or(0.0, |b| b.to);
-            bins.push(Bin {
-                from: before + 1.0,
-                to: (before * 2.0).max(1.0),
-                count: 0,
-            });
-        }
-        bins[bin].count += 1;
-
         implied(batch, pixel, lossy, |i, k, values| {
             self.check(k, (file, first_row + i as u64), values);
         });

@@ -5,7 +5,7 @@ use crate::{
     extract::{Outbox, peel, stream},
     items::shard_items,
 };
-use peelnet_dataset::FragmentBatch;
+use peelnet_dataset::{FragmentBatch, Part};
 use peelnet_render::gpu::Gpu;
 use peelnet_scene::Scene;
 use std::{
@@ -46,15 +46,9 @@ pub fn batches(
     let (gpu, scenes, options) = (gpu.clone(), scenes.to_vec(), options.clone());
     let (send, rows) = sync_channel(1);
     let peeling = std::thread::spawn(move || {
-        let make = |outbox: &Outbox| peel(&gpu, &scenes, &options, mine, outbox);
-        let peeled = stream(make, |mut feed| {
-            while let Some(part) = feed.part() {
-                feed.rows(&part, |rows| {
-                    let sent = send.send(Ok(rows.clone()));
-                    sent.map_err(|_| PeelError::Interrupted)
-                })?;
-            }
-            Ok(())
+        let peeled = peel_rows(&gpu, &scenes, &options, mine, |_, rows| {
+            let sent = send.send(Ok(rows.clone()));
+            sent.map_err(|_| PeelError::Interrupted)
         });
         if let Err(error) = peeled {
             // Nobody may ask any more.
@@ -65,6 +59,36 @@ pub fn batches(
         rows: Some(rows),
         peeling: Some(peeling),
     })
+}
+
+/// Peels these parts, hands their rows to `each` piece by piece, and returns the parts with what [`extract`](crate::extract()) would record of
+/// them but files. Pieces hold whole pixels. Nothing is written.
+///
+/// # Errors
+/// As [`batches`], and those of `each`, which end it.
+pub fn peel_rows(
+    gpu: &Gpu,
+    scenes: &[Scene],
+    options: &ExtractOptions,
+    parts: Vec<Part>,
+    mut each: impl FnMut(&Part, &FragmentBatch) -> Result<(), PeelError>,
+) -> Result<Vec<Part>, PeelError> {
+    let make = |outbox: &Outbox| peel(gpu, scenes, options, parts, outbox);
+    let mut peeled = Vec::new();
+    stream(make, |mut feed| {
+        while let Some(mut part) = feed.part() {
+            let mut pixels = 0;
+            let (_, counts) = feed.rows(&part, |rows| {
+                pixels += rows.pixels().count() as u64;
+                each(&part, rows)
+            })?;
+            (part.rows, part.pixels) = (counts.rows, pixels);
+            (part.lost_fragments, part.coplanar_ties) = (counts.lost, counts.coplanar);
+            peeled.push(part);
+        }
+        Ok(())
+    })?;
+    Ok(peeled)
 }
 
 impl Iterator for Batches {

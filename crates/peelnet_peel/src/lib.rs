@@ -14,7 +14,7 @@ pub mod read_back;
 mod rows;
 pub mod synthetic;
 
-pub use batches::{Batches, batches};
+pub use batches::{Batches, batches, peel_rows};
 pub use error::PeelError;
 pub use extract::{ExtractOptions, ExtractReport, Progress, extract};
 pub use read_back::Peel;

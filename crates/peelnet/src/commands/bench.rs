@@ -95,7 +95,7 @@ fn print(context: &Context<'_>, results: &Results<Bench>) -> Result<(), Failure>
 }
 
 /// Writes what was measured into a folder, and shows it.
-fn report<T: Measurement>(
+pub(super) fn report<T: Measurement>(
     context: &Context<'_>,
     gpu: &Gpu,
     out: &Path,

@@ -1,7 +1,9 @@
-use super::{Context, command_line, few, json_path};
+use super::{Context, bench::report, command_line, few, json_path};
 use crate::cli::{ExtractArgs, SealArgs};
 use crate::progress::Bar;
 use peelnet::Failure;
+use peelnet_bench::preview;
+use peelnet_bench::report::kind_of;
 use peelnet_core::files::{check_is_folder, counted, printable, shown, thousands};
 use peelnet_dataset::is_remote;
 use peelnet_peel::{ExtractOptions, ExtractReport, Progress, extract, synthetic::synthetic};
@@ -10,14 +12,20 @@ use peelnet_scene::Scene;
 use serde_json::json;
 use std::path::Path;
 
+/// The page of `--preview`.
+const PREVIEW: &str = "preview.html";
+
 pub(super) fn run(context: &Context<'_>, args: &ExtractArgs) -> Result<(), Failure> {
+    if args.preview {
+        return preview(context, args);
+    }
     let out = &args.out;
     if !is_remote(out) {
         check_is_folder("--out", out)?;
     }
     let replaces = peelnet_dataset::replaces(out, args.resume || args.shard.is_some())?;
     let (before, _) = finished(out);
-    let report = report(context, args);
+    let report = write(context, args);
     // Where the new one failed, the older one may still be there.
     if replaces && (report.is_ok() || peelnet_dataset::Dataset::open(out).is_err()) {
         let message = format!("replaced {} (a dataset)", shown(out));
@@ -59,6 +67,26 @@ pub(super) fn run(context: &Context<'_>, args: &ExtractArgs) -> Result<(), Failu
             "rows_by_scene": m.rows_by_scene(),
             "adapter": m.adapter,
         })
+    })
+}
+
+/// Counts the rows that an extraction writes, and writes a page about them.
+fn preview(context: &Context<'_>, args: &ExtractArgs) -> Result<(), Failure> {
+    let mut outputs = context.outputs(&args.scenes);
+    outputs.folder("--out", &args.out, [(PREVIEW, kind_of(PREVIEW))])?;
+    let scenes = context.scenes(&args.scenes)?;
+    let _begun = context.begin(outputs, &scenes)?;
+    let gpu = context.gpu()?;
+    let bar = Bar::new(context.console, "preview", 1);
+    let mut show = |done, total| bar.set(done, total, "views".to_owned());
+    let options = options(args);
+    let preview = preview::measure(&gpu, &scenes, &options, context.stop, &mut show)?;
+    drop(bar);
+    context.warn_of_memory(&gpu);
+    let page = args.out.join(PREVIEW);
+    report(context, &gpu, &args.out, preview, |results| {
+        let (table, text) = (results.table().plain(), results.text());
+        format!("{table}\n{}: {text}", shown(&page))
     })
 }
 
@@ -106,9 +134,8 @@ fn finished(folder: &Path) -> (u32, u32) {
     parts.ok().flatten().unwrap_or_default()
 }
 
-/// Peels, or makes lists up.
-fn report(context: &Context<'_>, args: &ExtractArgs) -> Result<ExtractReport, Failure> {
-    let options = ExtractOptions {
+fn options(args: &ExtractArgs) -> ExtractOptions {
+    ExtractOptions {
         size: args.size,
         views: args.views,
         format: args.format,
@@ -121,7 +148,12 @@ fn report(context: &Context<'_>, args: &ExtractArgs) -> Result<ExtractReport, Fa
         resume: args.resume,
         command: command_line(),
         ..ExtractOptions::new(&args.out)
-    };
+    }
+}
+
+/// Peels, or makes lists up.
+fn write(context: &Context<'_>, args: &ExtractArgs) -> Result<ExtractReport, Failure> {
+    let options = options(args);
     if let Some(lists) = args.synthetic {
         let bar = Bar::new(context.console, "synthetic", 1);
         let mut show = |p: &Progress| show(&bar, p);

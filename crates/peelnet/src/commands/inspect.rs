@@ -3,6 +3,7 @@ use crate::cli::{EFFECTS_METHOD, InspectArgs};
 use crate::summary_text::summary_text;
 use peelnet::Failure;
 use peelnet_bench::effects::{self, Cost, Settings};
+use peelnet_bench::report::{dataset_page, kind_of, write_file};
 use peelnet_core::files::{counted, one_line, printable, read_head, shown, thousands};
 use peelnet_dataset::{Dataset, Summary, is_remote};
 use peelnet_model::{KIND, Model};
@@ -40,16 +41,22 @@ pub(super) fn run(context: &Context<'_>, args: &InspectArgs) -> Result<(), Failu
         );
         return Err(Failure::wrong(text));
     }
+    let html = args.html.as_deref();
+    let is_dataset = path.is_dir() || is_remote(path) && !is_model;
+    if html.is_some() && !is_dataset && (is_model || ships || path.exists()) {
+        let text = format!("{}: --html is for a dataset; leave it out", shown(path));
+        return Err(Failure::wrong(text));
+    }
     if is_remote(path) {
         return if is_model {
             model(context, path)
         } else {
-            dataset(context, path)
+            dataset(context, path, html)
         };
     }
     if path.is_dir() {
         context.say_not_shipped("folder", path);
-        dataset(context, path)
+        dataset(context, path, html)
     } else if !path.exists() && !ships {
         let text = format!("{}: there is no such file or folder", shown(path));
         Err(Failure::failed(text))
@@ -66,10 +73,20 @@ pub(super) fn run(context: &Context<'_>, args: &InspectArgs) -> Result<(), Failu
     }
 }
 
-fn dataset(context: &Context<'_>, path: &Path) -> Result<(), Failure> {
+fn dataset(context: &Context<'_>, path: &Path, html: Option<&Path>) -> Result<(), Failure> {
+    let mut outputs = context.outputs([path]);
+    if let Some(page) = html {
+        outputs.file("--html", page, kind_of("page.html"))?;
+    }
+    let _begun = context.begin(outputs, &[])?;
     let dataset = Dataset::open(path)?;
     dataset.verify()?;
     let summary = Summary::from_dataset(&dataset)?;
+    if let Some(page) = html {
+        write_file(page, dataset_page(&dataset, &summary)?)?;
+        let message = format!("the page is {}", shown(page));
+        context.console.message(message);
+    }
     let m = dataset.manifest();
     let text = || {
         let [version, adapter, peel] = [&m.tool_version, &m.adapter, &m.peel].map(|t| printable(t));

@@ -1,4 +1,4 @@
-//! Charts as SVG text, drawn by plotters: [`line_chart`] and [`bubble_chart`].
+//! Charts as SVG text, drawn by plotters: [`line_chart`] and [`bubble_chart`]; and histograms, [`bar_chart`].
 //!
 //! Whatever names and titles hold, they are escaped: an [`Svg`] may stand inside a page.
 //!
@@ -10,9 +10,11 @@
 //! assert!(svg.as_str().contains("error &lt;of&gt; a method"));
 //! ```
 
+mod bars;
 mod bubbles;
 mod lines;
 
+pub use bars::bar_chart;
 pub use bubbles::bubble_chart;
 pub use lines::{Line, Scale, line_chart};
 

@@ -9,12 +9,14 @@
 //! file. They are built with maud, which escapes all text; charts come from `crate::chart`, which escapes as well.
 
 mod bench;
+mod dataset;
 mod designs;
 mod effects;
 mod files;
 mod page;
 mod path;
 mod picture;
+mod preview;
 mod results;
 mod scaling;
 mod stress;
@@ -23,6 +25,7 @@ mod table;
 mod testing;
 mod thesis;
 
+pub use dataset::dataset_page;
 pub use files::{kind_of, write_file};
 pub use results::{Files, Measurement, Results};
 pub use table::Table;

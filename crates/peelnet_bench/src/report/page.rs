@@ -1,10 +1,11 @@
 //! What all pages share: their frame, their style, and what was run on which machine.
 
 use crate::Machine;
-use crate::chart::Svg;
+use crate::chart::{Svg, bar_chart};
 use crate::report::{Results, Table};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use peelnet_core::files::printable_lines;
+use peelnet_dataset::summary::Bin;
 
 pub(crate) const GENERATOR_TAG: &str = "<meta name=\"generator\" content=\"peelnet\">";
 
@@ -21,6 +22,17 @@ pub(crate) fn page<T>(
     more: &[(String, String)],
     script: Option<&str>,
 ) -> String {
+    let body = html! {
+        (body)
+        h2 { "Machine and command" }
+        p { code { (results.command) } }
+        (machine(&results.machine, more).html("text", |_| false))
+    };
+    plain_page(title, body, script)
+}
+
+/// A page without what was run.
+pub(crate) fn plain_page(title: &str, body: Markup, script: Option<&str>) -> String {
     let markup = html! {
         (DOCTYPE) "\n"
         html lang="en" {
@@ -35,9 +47,6 @@ pub(crate) fn page<T>(
             body {
                 h1 { (title) }
                 (body)
-                h2 { "Machine and command" }
-                p { code { (results.command) } }
-                (machine(&results.machine, more).html("text", |_| false))
                 @if let Some(script) = script { script { (PreEscaped(script)) } }
             }
         }
@@ -51,6 +60,17 @@ pub(crate) fn page<T>(
 pub(crate) fn chart(class: &str, svg: &Svg) -> Markup {
     // What crate::chart draws is escaped already.
     html! { div class=(class) { (PreEscaped(svg.as_str())) } }
+}
+
+/// A histogram with its caption.
+pub(crate) fn histogram(caption: &str, bins: &[Bin], unit: &str) -> Markup {
+    html! {
+        figure {
+            (chart("chart", &bar_chart(bins, unit)))
+            figcaption { (caption) }
+        }
+        "\n"
+    }
 }
 
 /// Name and value of each property of the machine, and of what else is reported.

@@ -34,8 +34,12 @@ pub(crate) fn data_uri(
     let mut png = Cursor::new(Vec::new());
     let written = shown.to_rgb8().write_to(&mut png, ImageFormat::Png);
     written.map_err(EvalError::io(path, "shrink the picture"))?;
-    let text = STANDARD.encode(png.get_ref());
-    Ok(format!("data:image/png;base64,{text}"))
+    Ok(png_uri(png.get_ref()))
+}
+
+/// The bytes of a PNG file as `data:` URI.
+pub(crate) fn png_uri(png: &[u8]) -> String {
+    format!("data:image/png;base64,{}", STANDARD.encode(png))
 }
 
 pub(crate) fn figure(uri: &str, caption: &str) -> Markup {
