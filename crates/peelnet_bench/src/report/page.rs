@@ -4,7 +4,7 @@ use crate::Machine;
 use crate::chart::{Svg, bar_chart};
 use crate::report::{Results, Table};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
-use peelnet_core::files::printable_lines;
+use peelnet_core::files::{printable_lines, thousands};
 use peelnet_dataset::summary::Bin;
 
 pub(crate) const GENERATOR_TAG: &str = "<meta name=\"generator\" content=\"peelnet\">";
@@ -62,12 +62,13 @@ pub(crate) fn chart(class: &str, svg: &Svg) -> Markup {
     html! { div class=(class) { (PreEscaped(svg.as_str())) } }
 }
 
-/// A histogram with its caption.
+/// A histogram with its caption, which says how high bars are.
 pub(crate) fn histogram(caption: &str, bins: &[Bin], unit: &str) -> Markup {
+    let most = bins.iter().map(|bin| bin.count).max().unwrap_or(0);
     html! {
         figure {
             (chart("chart", &bar_chart(bins, unit)))
-            figcaption { (caption) }
+            figcaption { (caption) " (highest: " (thousands(most)) ")" }
         }
         "\n"
     }

@@ -28,7 +28,10 @@ impl Results<Preview> {
             counted(p.rows, "row"),
             counted(p.pixels, "pixel"),
             counted(p.parts, "part"),
-            counted(p.expected_bytes, "byte"),
+            match p.expected_bytes {
+                few if few < 1_000_000 => counted(few, "byte"),
+                many => format!("{:.1} MB", many as f64 / 1e6),
+            },
             p.format,
             counted(p.sampled_rows, "row"),
         )

@@ -64,7 +64,10 @@ pub fn dataset_page(dataset: &Dataset, summary: &Summary) -> Result<String, Eval
             (with_rows) " views that have rows. "
             @if m.pixels_fraction < 1.0 { "The dataset has " (rounded(100.0 * m.pixels_fraction)) " % of the pixels. " }
             @if cut > 0 { "Of " (counted(cut, "view")) " only the first " (thousands(MOST_READ)) " rows were read. " }
-            "Point at a picture to see the rows of a pixel, from the nearest to the farthest, and click to keep them."
+            @if pointed > 0 {
+                "This page has rows of " (counted(pointed as u64, "picture")) ", at most " (thousands(MOST_ROWS as u64)) " in all; with more, cells are larger. \
+                 Point at such a picture to see the rows of a pixel, from the nearest to the farthest, and click to keep them."
+            }
         }
         @for table in tables { (table) }
         @if !others.is_empty() { h3 { "Other views" } div.gallery { @for figure in others { (figure) } } }
@@ -77,7 +80,7 @@ pub fn dataset_page(dataset: &Dataset, summary: &Summary) -> Result<String, Eval
         div.gallery {
             (page::histogram("pixels by their number of fragments", &summary.fragments_per_pixel, "pixels"))
             (page::histogram("rows by alpha", &summary.alpha, "rows"))
-            @for s in &m.statistics { (page::histogram(&printable(&s.name), &bins(s), "rows")) }
+            @for s in m.statistics.iter().take(Column::ALL.len()) { (page::histogram(&printable(&s.name), &bins(s), "rows")) }
         }
         p.note {
             @if m.statistics.is_empty() { "This dataset has no statistics of its columns: it is empty or of an earlier version." }
