@@ -105,6 +105,7 @@ fn a_preview_counts_what_an_extraction_writes() {
         let views = if flags == rest { 3 } else { 6 };
         let page = page(&folder, &format!("p{k}/preview.html"));
         assert_eq!(page.matches("data:image/png").count(), views, "{flags}");
+        assert_eq!(page.matches("rows by linear depth").count(), 3, "{flags}");
     }
     let said = folder.says("extract s.toml --size 8x8 --out p0 --preview", 0);
     assert!(

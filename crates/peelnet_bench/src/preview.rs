@@ -7,7 +7,7 @@ use crate::{
 use peelnet_dataset::{Format, FragmentBatch, Part, Summary, summary::Bin};
 use peelnet_peel::{ExtractOptions, PeelError, items::items, peel_rows};
 use peelnet_render::gpu::Gpu;
-use peelnet_render::{Image, MethodOptions, Renderer};
+use peelnet_render::{Image, MethodOptions, RenderError, Renderer};
 use peelnet_scene::Scene;
 use serde::Serialize;
 use std::{
@@ -64,8 +64,8 @@ pub struct ScenePreview {
     pub pictures: Vec<Image>,
 }
 
-/// Peels and counts what [`peelnet_peel::extract()`] would write with these options, and draws the first views. Progress is how much of
-/// how much is done. Folder, shard and `resume` of the options are not used.
+/// Peels and counts what [`peelnet_peel::extract()`] would write with these options, and draws the first views. Progress is the number of
+/// parts that are done, and of all. Folder, shard and `resume` of the options are not used.
 ///
 /// # Errors
 /// Those of peeling, drawing, and of temporary files.
@@ -77,37 +77,22 @@ pub fn measure(
     progress: &mut dyn FnMut(u64, u64),
 ) -> Result<Preview, EvalError> {
     let parts = items(scenes, options)?;
-    let of_each = (MOST_PICTURES / scenes.len()).max(1);
-    let views = |k: usize| {
-        let own = parts
-            .iter()
-            .filter(|p| p.scene as usize == k && p.copy == 0);
-        own.count()
-    };
-    let drawn = |k: usize| match k < MOST_PICTURES {
-        true => views(k).min(of_each),
-        false => 0,
-    };
-    let pictures: usize = (0..scenes.len()).map(drawn).sum();
-    let (mut done, total) = (0, (parts.len() + pictures) as u64);
+    let total = parts.len() as u64;
     let mut gathered: Vec<Gathered> = scenes.iter().map(|_| Gathered::default()).collect();
-    let mut last = None;
-    let peeled = peel_rows(gpu, scenes, options, parts.clone(), |part, rows| {
-        if last.replace(part.index) != Some(part.index) {
-            done = u64::from(part.index);
-            progress(done, total);
-        }
+    let peeled = peel_rows(gpu, scenes, options, parts, |part, rows| {
+        progress(part.index.into(), total);
         gathered[part.scene as usize].add(rows, options.format)?;
         let goes_on = !stop.load(Ordering::Relaxed);
         goes_on.then_some(()).ok_or(PeelError::Interrupted)
     })?;
+    progress(total, total);
     let mut preview = Preview {
         size: options.size,
         format: options.format,
-        parts: peeled.len() as u64,
+        parts: total,
         ..Preview::default()
     };
-    done = preview.parts;
+    let mut left = MOST_PICTURES;
     for (k, (scene, gathered)) in scenes.iter().zip(gathered).enumerate() {
         let own = peeled.iter().filter(|part| part.scene as usize == k);
         let sum = |of: fn(&Part) -> u64| own.clone().map(of).sum::<u64>();
@@ -118,43 +103,40 @@ pub fn measure(
         preview.coplanar_ties += sum(|p| p.coplanar_ties);
         preview.sampled_rows += gathered.sampled[0];
         preview.expected_bytes += gathered.expected_bytes(rows);
-        let mut images = Vec::new();
-        if drawn(k) > 0 {
-            let failed = || EvalError::render(&scene.name, EXACT);
-            let renderer = Renderer::new(gpu, scene).map_err(failed())?;
-            let longer = options
-                .size
-                .into_iter()
-                .max()
-                .unwrap_or(1)
-                .max(PICTURE_SIDE);
-            let side = |n: u32| (u64::from(n) * u64::from(PICTURE_SIDE) / u64::from(longer)).max(1);
-            let size = options.size.map(|n| side(n) as u32);
-            let exact = EXACT.parse().map_err(failed())?;
-            let method = renderer.method(&exact, MethodOptions::sized(size));
-            let mut method = method.map_err(failed())?;
-            for camera in &scene.views[..drawn(k)] {
-                check_stop(stop)?;
-                let frame = renderer.image(&mut method, camera).map_err(failed())?;
-                images.push(frame.image);
-                done += 1;
-                progress(done, total);
-            }
-        }
+        let of_first = peeled
+            .iter()
+            .filter(|p| p.scene as usize == k && p.copy == 0);
+        let views = of_first.count();
+        let drawn = views.min(left).min((MOST_PICTURES / scenes.len()).max(1));
+        left -= drawn;
+        check_stop(stop)?;
+        let pictures = draw(gpu, scene, drawn, options.size);
         preview.scenes.push(ScenePreview {
             name: scene.name.clone(),
             held_out: scene.held_out,
-            views: views(k) as u64,
+            views: views as u64,
             parts: own.clone().count() as u64,
             rows,
             pixels: sum(|p| p.pixels),
             depth: gathered.depth_bins(),
             fragments_per_pixel: gathered.summary.fragments_per_pixel,
             alpha: gathered.summary.alpha,
-            pictures: images,
+            pictures: pictures.map_err(EvalError::render(&scene.name, EXACT))?,
         });
     }
     Ok(preview)
+}
+
+/// Draws the first views exactly, small.
+fn draw(gpu: &Gpu, scene: &Scene, views: usize, size: [u32; 2]) -> Result<Vec<Image>, RenderError> {
+    let longer = u64::from(size[0].max(size[1]).max(PICTURE_SIDE));
+    let side = |n: u32| (u64::from(n) * u64::from(PICTURE_SIDE) / longer).max(1) as u32;
+    let renderer = Renderer::new(gpu, scene)?;
+    let options = MethodOptions::sized(size.map(side));
+    let mut exact = renderer.method(&EXACT.parse()?, options)?;
+    let views = scene.views[..views].iter();
+    let frames = views.map(|camera| Ok(renderer.image(&mut exact, camera)?.image));
+    frames.collect()
 }
 
 /// What is gathered of a scene's rows.
@@ -171,10 +153,8 @@ impl Gathered {
     fn add(&mut self, rows: &FragmentBatch, format: Format) -> Result<(), PeelError> {
         self.summary.add(rows);
         for depth in &rows.linear_depth {
-            *self
-                .depths
-                .entry(depth.to_bits() >> DEPTH_BITS)
-                .or_default() += 1;
+            let key = depth.to_bits() >> DEPTH_BITS;
+            *self.depths.entry(key).or_default() += 1;
         }
         let mut sample = FragmentBatch::default();
         sample.extend_from(rows, 0..rows.len().min(SAMPLED_ROWS));

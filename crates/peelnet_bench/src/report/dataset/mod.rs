@@ -93,11 +93,8 @@ pub fn dataset_page(dataset: &Dataset, summary: &Summary) -> Result<String, Eval
         p { code { (one_line(&m.command)) } }
         (made(m).html("text", |_| false))
     };
-    Ok(page::plain_page(
-        "A dataset of fragments",
-        body,
-        Some(SCRIPT),
-    ))
+    let title = "A dataset of fragments";
+    Ok(page::plain_page(title, body, Some(SCRIPT)))
 }
 
 fn caption(m: &Manifest, part: &Part) -> String {
@@ -114,11 +111,8 @@ fn caption(m: &Manifest, part: &Part) -> String {
 }
 
 fn uri_of(grid: &Grid) -> Result<String, EvalError> {
-    data_uri(
-        "in memory".as_ref(),
-        &DynamicImage::ImageRgb8(grid.image()),
-        SIDE,
-    )
+    let image = DynamicImage::ImageRgb8(grid.image());
+    data_uri("in memory".as_ref(), &image, SIDE)
 }
 
 /// A picture beside the rows of its deepest pixel; with the script, of the one that is pointed at.
@@ -144,46 +138,46 @@ fn with_pixels(grid: &Grid, name: &str) -> Result<Markup, EvalError> {
 }
 
 fn scenes(m: &Manifest) -> Table {
-    let rows = m.rows_by_scene();
-    let line = |(k, scene): (usize, &peelnet_dataset::SceneEntry)| {
-        let parts = m.parts.iter().filter(|part| part.scene as usize == k);
-        vec![
-            printable(&scene.name).into_owned(),
-            thousands(parts.count() as u64),
-            thousands(rows.get(&*scene.name).copied().unwrap_or(0)),
-            if scene.held_out { "yes" } else { "no" }.to_owned(),
-            scene.effects.join(", "),
-            scene.file.clone(),
-        ]
-    };
-    let headings = ["scene", "parts", "rows", "held out", "effects", "file"];
-    Table::new(
-        headings,
-        m.scenes.iter().enumerate().take(MOST_SCENES).map(line),
+    let (rows, scene) = (m.rows_by_scene(), |k: &usize| &m.scenes[*k]);
+    let shown: Vec<usize> = (0..m.scenes.len().min(MOST_SCENES)).collect();
+    Table::from_rows(
+        &shown,
+        &[
+            ("scene", &|k| printable(&scene(k).name).into_owned()),
+            ("parts", &|k| {
+                let parts = m.parts.iter().filter(|part| part.scene as usize == *k);
+                thousands(parts.count() as u64)
+            }),
+            ("rows", &|k| {
+                thousands(rows.get(&*scene(k).name).copied().unwrap_or(0))
+            }),
+            ("held out", &|k| {
+                ["no", "yes"][usize::from(scene(k).held_out)].to_owned()
+            }),
+            ("effects", &|k| scene(k).effects.join(", ")),
+            ("file", &|k| scene(k).file.clone()),
+        ],
     )
 }
 
 fn columns(m: &Manifest, summary: &Summary) -> Table {
-    let line = |column: Column| {
-        let range = summary.columns.get(column as usize);
-        let range = range.map_or([None; 2], |range| [Some(range.min), Some(range.max)]);
-        let statistics = m.statistics.get(column as usize);
-        let [mean, deviation] = [statistics.map(|s| s.mean), statistics.map(|s| s.deviation)];
-        let numbers = range.into_iter().chain([mean, deviation]);
-        let numbers = numbers.map(|x| x.map_or_else(|| "–".to_owned(), rounded));
-        let words = [column.name(), column.unit(), column.meaning()].map(str::to_owned);
-        words.into_iter().chain(numbers).collect()
-    };
-    let headings = [
-        "column",
-        "unit",
-        "meaning",
-        "minimum",
-        "maximum",
-        "mean",
-        "standard deviation",
-    ];
-    Table::new(headings, Column::ALL.map(line))
+    let number = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), rounded);
+    let range = |c: &Column| summary.columns.get(*c as usize);
+    let of_all = |c: &Column| m.statistics.get(*c as usize);
+    Table::from_rows(
+        &Column::ALL,
+        &[
+            ("column", &|c| c.to_string()),
+            ("unit", &|c| c.unit().to_owned()),
+            ("meaning", &|c| c.meaning().to_owned()),
+            ("minimum", &|c| number(range(c).map(|r| r.min))),
+            ("maximum", &|c| number(range(c).map(|r| r.max))),
+            ("mean", &|c| number(of_all(c).map(|s| s.mean))),
+            ("standard deviation", &|c| {
+                number(of_all(c).map(|s| s.deviation))
+            }),
+        ],
+    )
 }
 
 /// The bins of a column, for integers without those between 0 and 1. A manifest can hold any edges and counts.
@@ -193,11 +187,7 @@ fn bins(s: &ColumnStatistics) -> Vec<Bin> {
     let bins = s.edges.windows(2).zip(&s.counts);
     let bin = |(edges, &count): (&[f64], &u64)| Bin {
         from: edges[0],
-        to: if is_integer {
-            edges[1].max(1.0)
-        } else {
-            edges[1]
-        },
+        to: edges[1].max(if is_integer { 1.0 } else { edges[1] }),
         count,
     };
     let is_between = |bin: &Bin| is_integer && bin.from > 0.0 && bin.from < 1.0;
@@ -205,14 +195,17 @@ fn bins(s: &ColumnStatistics) -> Vec<Bin> {
 }
 
 fn checks(summary: &Summary) -> Table {
-    let lines = summary.checks.iter().map(|check| {
-        let verdict = match check.violations {
-            0 => "holds".to_owned(),
-            n => format!("violated by {}", counted(n, "row")),
-        };
-        vec![check.name.clone(), check.formula.clone(), verdict]
-    });
-    Table::new(["column", "property", "result"], lines)
+    Table::from_rows(
+        &summary.checks,
+        &[
+            ("column", &|check| check.name.clone()),
+            ("property", &|check| check.formula.clone()),
+            ("result", &|check| match check.violations {
+                0 => "holds".to_owned(),
+                n => format!("violated by {}", counted(n, "row")),
+            }),
+        ],
+    )
 }
 
 fn made(m: &Manifest) -> Table {
@@ -233,17 +226,13 @@ fn made(m: &Manifest) -> Table {
         ("at one depth", counted(m.coplanar_ties, "pair")),
         ("hash of the rows", m.hash.clone()),
     ];
-    let known = known.map(|(name, value)| (name.to_owned(), value));
-    let settings = m
-        .settings
-        .iter()
-        .map(|(name, value)| (name.clone(), value.clone()));
+    let settings = m.settings.iter();
+    let settings = settings.map(|(name, value)| (name.as_str(), value.clone()));
     let lines = known.into_iter().chain(settings);
-    let lines = lines.map(|(name, value)| {
-        vec![
-            printable(&name).into_owned(),
-            printable(&value).into_owned(),
-        ]
+    let lines = lines.map(|line| {
+        [line.0, &line.1]
+            .map(|text| printable(text).into_owned())
+            .to_vec()
     });
     Table::new(["property", "value"], lines)
 }
