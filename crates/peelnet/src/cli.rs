@@ -393,6 +393,9 @@ pub struct ViewArgs {
     /// The picture alone, without panels
     #[arg(long)]
     pub bare: bool,
+    /// Train this network on the scene, as the button does; a script without --frames ends once it is trained
+    #[arg(long, value_name = "RECIPE")]
+    pub train: Option<Recipe>,
     /// For scripts: draw N frames and end
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     pub frames: Option<u64>,

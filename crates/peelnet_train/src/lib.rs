@@ -90,4 +90,4 @@ pub use table::{
     ALPHA, COLOR, DataSplit, EXACT, KNOWN, LEFT, PixelColumns, RESIDUAL, SUM, TrainingData,
     UsedRows,
 };
-pub use training_loop::{RunOptions, train};
+pub use training_loop::{RunOptions, train, train_watched};

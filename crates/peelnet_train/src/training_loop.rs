@@ -69,7 +69,20 @@ pub fn train(
     config: &Config,
     data: &TrainingData,
     options: &RunOptions<'_>,
-    on_epoch: impl FnMut(&[EpochReport]),
+    mut on_epoch: impl FnMut(&[EpochReport]),
+) -> Result<Outcome, TrainError> {
+    train_watched(config, data, options, |epochs, _| on_epoch(epochs))
+}
+
+/// The same, for programs that draw while it trains: `on_epoch` also gets a function that makes the model of the epoch that has ended.
+///
+/// # Errors
+/// As [`train`].
+pub fn train_watched(
+    config: &Config,
+    data: &TrainingData,
+    options: &RunOptions<'_>,
+    on_epoch: impl FnMut(&[EpochReport], &dyn Fn() -> Model),
 ) -> Result<Outcome, TrainError> {
     config.check()?;
     if options.out.is_dir() {
@@ -119,7 +132,10 @@ struct Run<'a> {
 }
 
 impl Run<'_> {
-    fn go(&self, mut on_epoch: impl FnMut(&[EpochReport])) -> Result<Outcome, TrainError> {
+    fn go(
+        &self,
+        mut on_epoch: impl FnMut(&[EpochReport], &dyn Fn() -> Model),
+    ) -> Result<Outcome, TrainError> {
         let mut progress = self.start()?;
         let epochs = |progress: &Progress| progress.history.len() as u32;
         let resumed_from = self.options.resume.then(|| epochs(&progress));
@@ -142,7 +158,10 @@ impl Run<'_> {
             }
             progress.adam = adam;
             progress.history.push(report);
-            on_epoch(&progress.history);
+            let (parameters, history) = (&progress.adam.parameters, &progress.history);
+            on_epoch(history, &|| {
+                self.model(epochs(&progress), parameters, history)
+            });
             if saved.elapsed() >= SAVE_EVERY {
                 self.save(&progress)?;
                 saved = Instant::now();

@@ -48,8 +48,8 @@ impl App {
     /// The command that opens this view again; `None` without a scene.
     pub(crate) fn command(&self) -> Option<String> {
         let mut command = format!("peelnet view {}", quoted(&self.scene_path()?));
-        let model = self.first.own_network();
-        let model = model.map(|n| ("model", n.path.to_string_lossy().into_owned()));
+        let model = self.first.own_network().and_then(|n| n.path.as_ref());
+        let model = model.map(|path| ("model", path.to_string_lossy().into_owned()));
         for (name, value) in self.options().into_iter().chain(model) {
             command += &format!(" --{name}={}", quoted(&value));
         }

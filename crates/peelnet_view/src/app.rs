@@ -15,11 +15,13 @@ use crate::{
     slot::{Network, Slot},
     stage::{Source, Stage},
     task::{Fallible, one_line},
+    training::Training,
     watch::Watch,
 };
 use eframe::egui_wgpu::{RenderState, WgpuConfiguration, WgpuSetup, WgpuSetupExisting};
 use egui::Context;
 use glam::Vec3;
+use peelnet_model::{Model, Recipe};
 use peelnet_render::gpu::{Gpu, wgpu};
 use peelnet_render::{FrameStatus, MethodSpec};
 use peelnet_scene::{Camera, Scene};
@@ -50,6 +52,8 @@ pub struct Start {
     pub against: Option<MethodSpec>,
     /// Whether the picture alone is shown, without panels.
     pub bare: bool,
+    /// Trains this on the scene at once; not in a page.
+    pub train: Option<Recipe>,
     pub script: Option<Script>,
 }
 
@@ -67,6 +71,7 @@ impl Start {
             compare: Mode::One,
             against: None,
             bare: false,
+            train: None,
             script: None,
         }
     }
@@ -98,6 +103,9 @@ pub(crate) struct App {
     pub inspector: Inspector,
     pub front: Front,
     pub output: Output,
+    pub training: Training,
+    /// Begins with the next frame.
+    train: Option<Recipe>,
     pub messages: Messages,
     pub watch: Watch,
     pub recent: Vec<PathBuf>,
@@ -143,6 +151,8 @@ impl App {
             inspector: Inspector::default(),
             front: Front::default(),
             output: Output::default(),
+            training: Training::default(),
+            train: start.train,
             messages: Messages::default(),
             watch: Watch::default(),
             recent,
@@ -192,6 +202,7 @@ impl App {
             return;
         };
         self.cancel();
+        self.training.abandon();
         for warning in &stage.scene.warnings {
             self.messages.warn(warning.clone());
         }
@@ -233,7 +244,8 @@ impl App {
     /// Draws with a network, by its method, and reads its file again when it changes.
     pub fn open_network(&mut self, source: Source) {
         let bytes = source.bytes();
-        let network = bytes.and_then(|bytes| Network::from_bytes(source.path.clone(), &bytes));
+        let model = bytes.and_then(|bytes| Ok(Model::from_bytes(&bytes, &source.path)?));
+        let network = model.and_then(|m| Network::from_model(Some(source.path.clone()), m));
         let Some(network) = self.messages.unless_error(network) else {
             return;
         };
@@ -244,6 +256,7 @@ impl App {
             self.first.set_spec(spec);
         }
         self.errors.cancel();
+        self.training.abandon();
         self.first.set_network(Some(network));
         self.watch
             .follow(Some(source.path).filter(|_| source.dropped.is_none()));
@@ -294,6 +307,11 @@ impl App {
         if let Some(path) = self.watch.changed(ui) {
             self.open_network(Source::named(path));
         }
+        if let Some(recipe) = self.train.take() {
+            self.training.recipe = Some(recipe);
+            self.begin_training(ui);
+        }
+        self.poll_training(ui);
     }
 
     /// Draws what is shown in a picture of this size, where anything changed; the texture that egui shows.
@@ -308,7 +326,8 @@ impl App {
         if self.page.is_drawing(ui) {
             return self.display.texture();
         }
-        let always = self.script.as_ref().is_some_and(|script| !script.asked);
+        let waits = self.awaits_training();
+        let always = (self.script.as_ref()).is_some_and(|script| script.draws_always(waits));
         let stage = self.stage.as_ref()?;
         let mode = self.compare.mode_at(ui);
         let half = [size[0].div_ceil(2), size[1]];
@@ -402,8 +421,9 @@ impl App {
         // A slow average, so that the number can be read.
         let now = begin.elapsed().as_secs_f64() * 1e3;
         self.cpu_ms += 0.1 * (now - self.cpu_ms);
+        let waits = self.awaits_training();
         if let Some(script) = &mut self.script {
-            script.advance(&ctx, &self.first, now);
+            script.advance(&ctx, &self.first, &self.training, waits, now);
         }
     }
 }

@@ -8,6 +8,8 @@
 //! 3. Each method draws its picture, in linear light, where anything changed. One more pass encodes it for the window, or makes a map of it.
 //! 4. Once the view rests, it is measured against the exact image.
 //!
+//! A training has a thread and a graphics device of its own; a frame takes the newest network from it.
+//!
 //! Controls of methods are made from the methods' declarations ([`peelnet_render::METHODS`]): a new method or parameter appears by itself.
 
 #![allow(missing_docs)]
@@ -31,6 +33,8 @@ mod stage;
 mod task;
 #[cfg(test)]
 mod tests;
+#[cfg(not(target_arch = "wasm32"))]
+mod training;
 mod viewport;
 mod watch;
 #[cfg(target_arch = "wasm32")]
@@ -46,3 +50,6 @@ pub use script::Script;
 pub use web::Page;
 #[cfg(not(target_arch = "wasm32"))]
 pub use window::open;
+
+#[cfg(target_arch = "wasm32")]
+use web::training;

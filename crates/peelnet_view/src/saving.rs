@@ -94,6 +94,27 @@ impl App {
         self.output.show(saved);
     }
 
+    /// Writes the network that is drawn, and its text as WGSL, into two new files.
+    pub(crate) fn export_network(&mut self) {
+        let (Some(stage), Some(model)) = (&self.stage, self.first.model()) else {
+            return;
+        };
+        let names = [".safetensors", ".wgsl"].map(|e| free_name(stage, &self.first, e));
+        let exported = || -> Fallible<String> {
+            let text = peelnet_export::wgsl(&model)?;
+            let first = keep(&names[0], &model.to_bytes()?)?;
+            Ok(format!("{first}, {}", keep(&names[1], text.as_bytes())?))
+        };
+        let exported = exported();
+        if exported.is_ok()
+            && let Some(network) = &mut self.first.network
+        {
+            let [file, _] = names;
+            network.path = Some(file);
+        }
+        self.output.show(exported);
+    }
+
     pub(crate) fn copy_shader(&mut self, ui: &egui::Context, language: Language) {
         let Some(model) = self.first.model() else {
             return;

@@ -3,6 +3,7 @@
 use crate::{
     slot::Slot,
     task::{Fallible, one_line},
+    training::Training,
 };
 use egui::{ColorImage, Context, ViewportCommand};
 use peelnet_render::{FrameStatus, Image};
@@ -15,10 +16,10 @@ use web_time::Instant;
 /// Draws so many frames, saves what the window shows, and closes it.
 #[derive(Clone, Debug)]
 pub struct Script {
-    frames: u64,
+    frames: Option<u64>,
     screenshot: Option<PathBuf>,
     /// Whether all frames are drawn; until then they are drawn again although nothing changes.
-    pub(crate) asked: bool,
+    asked: bool,
     last: Option<Instant>,
     /// What frames cost, milliseconds: from frame to frame, the method's passes where their times came back, and the window's frame on the CPU.
     costs: [Vec<f64>; 3],
@@ -26,10 +27,10 @@ pub struct Script {
 }
 
 impl Script {
-    /// At least one frame is drawn.
-    pub fn new(frames: u64, screenshot: Option<PathBuf>) -> Self {
+    /// At least one frame is drawn; without a number also all that a training brings.
+    pub fn new(frames: Option<u64>, screenshot: Option<PathBuf>) -> Self {
         Self {
-            frames: frames.max(1),
+            frames,
             screenshot,
             asked: false,
             last: None,
@@ -50,10 +51,25 @@ impl Script {
         ui.request_repaint();
     }
 
+    /// Whether frames are drawn although nothing changes; `waits` says whether a training goes on.
+    pub(crate) const fn draws_always(&self, waits: bool) -> bool {
+        !self.asked && (self.frames.is_some() || !waits)
+    }
+
     /// After each frame; `cpu_ms` is what its work on the CPU took.
-    pub(crate) fn advance(&mut self, ui: &Context, slot: &Slot, cpu_ms: f64) {
-        if let Some(failure) = slot.failure.as_ref().filter(|_| !self.asked) {
-            return self.finish(ui, Err(format!("{}: {failure}", slot.spec)));
+    pub(crate) fn advance(
+        &mut self,
+        ui: &Context,
+        slot: &Slot,
+        training: &Training,
+        waits: bool,
+        cpu_ms: f64,
+    ) {
+        let drawing = (slot.spec.to_string(), &slot.failure);
+        for (what, failure) in [drawing, ("training".to_owned(), &training.failure)] {
+            if let Some(failure) = failure.as_ref().filter(|_| !self.asked) {
+                return self.finish(ui, Err(format!("{what}: {failure}")));
+            }
         }
         ui.request_repaint();
         if self.asked {
@@ -66,11 +82,13 @@ impl Script {
             all.extend(ms);
         }
         // A method that needs counts has its whole picture only after they came back.
-        if slot.frames < self.frames || slot.status != FrameStatus::Whole {
+        let goes_on = self.frames.is_none() && waits;
+        if slot.frames < self.frames.unwrap_or(1) || slot.status != FrameStatus::Whole || goes_on {
             return;
         }
         self.asked = true;
-        let costs = self.medians(slot);
+        let mut costs = self.medians(slot);
+        costs.extend(training.text().map(|text| format!("\n{text}")));
         let Some(path) = self.screenshot.clone() else {
             return self.finish(ui, Ok(costs));
         };

@@ -22,16 +22,16 @@ const PICTURE: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 
 #[derive(Clone)]
 pub(crate) struct Network {
-    pub path: PathBuf,
+    /// The file that it is in; none of one that was trained here and is not exported.
+    pub path: Option<PathBuf>,
     pub model: Model,
     pub weight: LearnedWeight,
-    /// Another number whenever a file is read.
+    /// Another number whenever a file is read or an epoch ends.
     pub number: u64,
 }
 
 impl Network {
-    pub fn from_bytes(path: PathBuf, bytes: &[u8]) -> Fallible<Self> {
-        let model = Model::from_bytes(bytes, &path)?;
+    pub fn from_model(path: Option<PathBuf>, model: Model) -> Fallible<Self> {
         let weight = LearnedWeight {
             recipe: model.meta.recipe,
             wgsl: peelnet_export::wgsl(&model)?,
@@ -116,8 +116,11 @@ impl Slot {
     }
 
     pub fn set_network(&mut self, network: Option<Network>) {
+        let was_own = self.own_network().is_some();
         self.network = network;
-        self.forget();
+        if was_own || self.own_network().is_some() {
+            self.forget();
+        }
     }
 
     /// Makes the method ready anew, at the next frame.

@@ -185,16 +185,19 @@ impl Stage {
         Ok(edited?)
     }
 
+    /// With all changes, without the effects that are off.
+    #[cfg(not(target_arch = "wasm32"))]
+    pub fn without_effects(&self) -> Scene {
+        without(&self.scene, &self.shown)
+    }
+
     pub fn reset(&mut self) -> Fallible<()> {
         self.show(self.loaded.clone(), Shown::default())
     }
 
     /// Draws a scene, or a part of it; where that fails, all stays as it was.
     fn show(&mut self, scene: Scene, shown: Shown) -> Fallible<()> {
-        let mut drawn = scene.clone();
-        for effect in shown.off.iter().copied().filter_map(Effect::find) {
-            drawn = drawn.without(effect);
-        }
+        let mut drawn = without(&scene, &shown);
         if let Some(layers) = shown.layers {
             drawn = drawn.layer_view(layers.highlight, shown.shade_all)?;
         }
@@ -232,4 +235,9 @@ impl Stage {
             _ => self.show(self.scene.clone(), self.shown.clone()),
         }
     }
+}
+
+fn without(scene: &Scene, shown: &Shown) -> Scene {
+    let off = shown.off.iter().copied().filter_map(Effect::find);
+    off.fold(scene.clone(), |scene, effect| scene.without(effect))
 }

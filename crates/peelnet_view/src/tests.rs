@@ -4,10 +4,12 @@ use crate::{
     Mode, Start, address,
     app::{App, configuration},
     compare::MODES,
+    slot::Shot,
     stage::{Source, Stage},
 };
 use eframe::egui_wgpu::{RenderState, RendererOptions};
 use egui_kittest::{Harness, kittest::Queryable as _};
+use peelnet_bench::metrics;
 use peelnet_model::{Model, Recipe};
 use peelnet_render::gpu::{AdapterRequest, Gpu};
 use peelnet_render::{FrameStatus, MethodOptions, MethodSpec, Renderer};
@@ -408,6 +410,116 @@ fn a_network_is_read_again_when_its_file_changes() {
         loaded(app) == Some("deep-large")
     });
     assert_eq!(method(&w), "deep-large");
+}
+
+/// Trains on a scene in a small size; returns once the first network is drawn.
+fn training(scene: &str, epochs: u32) -> Window {
+    let mut w = sized(scene, "wboit-eq9", [900.0, 900.0]);
+    let training = &mut w.state_mut().training;
+    (training.size, training.epochs) = ([96, 64], Some(epochs));
+    press(&mut w, "Training");
+    press(&mut w, "Train on this scene");
+    until(&mut w, "the first network", |app| {
+        app.first.own_network().is_some()
+    });
+    assert_eq!(method(&w), "deep-small");
+    w
+}
+
+/// The number and the epoch of the network that is drawn.
+fn trained(w: &Window) -> (u64, u32) {
+    let network = w.state().first.own_network().unwrap();
+    (network.number, network.model.meta.epochs)
+}
+
+/// Mean squared error of the picture by the network that is drawn.
+fn error(w: &Window) -> f64 {
+    let (app, size) = (w.state(), [96, 64]);
+    let Shot {
+        renderer,
+        spec,
+        options,
+    } = app.first.shot(stage(w), size);
+    let draw = |spec: &MethodSpec, options| {
+        let mut prepared = renderer.method(spec, options).unwrap();
+        renderer
+            .image(&mut prepared, &app.camera)
+            .unwrap()
+            .image
+            .pixels
+    };
+    let exact = draw(&"abuffer".parse().unwrap(), MethodOptions::sized(size));
+    metrics::differences(&exact, &draw(&spec, options)).mse255
+}
+
+/// The picture follows: another network after the first, and at the end a better one, which is exported.
+#[test]
+fn the_picture_follows_a_training() {
+    let mut w = training("boxes", 200);
+    let (first, first_error) = (trained(&w), error(&w));
+    until(&mut w, "another network", |app| {
+        app.first.own_network().unwrap().number != first.0
+    });
+    until(&mut w, "trained", |app| !app.training.is_busy());
+    assert_eq!(w.state().messages.0, []);
+    assert_eq!(
+        (trained(&w).1, w.state().training.history.len()),
+        (200, 200)
+    );
+    let last_error = error(&w);
+    assert!(last_error < 0.5 * first_error, "{first_error} {last_error}");
+    let app = w.state_mut();
+    app.panels.measures = true;
+    until(&mut w, "measured", |app| !app.awaits_training());
+    let text = w.state().training.text().unwrap();
+    assert!(text.contains("trained 200 epochs in "), "{text}");
+    assert!(text.contains("; MSE of the view "), "{text}");
+}
+
+/// Stop keeps the last whole epoch.
+#[test]
+fn a_training_is_stopped() {
+    let mut w = training("boxes", 100_000);
+    press(&mut w, "Stop training");
+    until(&mut w, "stopped", |app| !app.training.is_busy());
+    let history = w.state().training.history.len();
+    assert_eq!(trained(&w).1 as usize, history);
+    assert!(history < 100_000);
+    assert_eq!(w.state().messages.0, []);
+    w.get_by_label("Train on this scene");
+}
+
+/// Another scene ends a training, and so does another network; what was drawn last stays, and nothing comes after it.
+#[test]
+fn another_scene_ends_a_training() {
+    let mut w = training("boxes", 100_000);
+    w.state_mut().open(Source::named("cups"), None);
+    let last = trained(&w);
+    steps(&mut w);
+    assert!(!w.state().training.is_busy());
+    std::thread::sleep(Duration::from_millis(600));
+    steps(&mut w);
+    assert_eq!(trained(&w), last);
+    assert_eq!(w.state().messages.0, []);
+}
+
+/// What cannot be trained is one message.
+#[test]
+fn a_training_that_fails_says_why() {
+    let mut w = window("boxes", "wboit-eq9");
+    let folder = tempfile::tempdir().unwrap();
+    let scene = folder.path().join("opaque.toml");
+    let text = "[camera]\nposition = [0, 0, 5]\ntarget = [0, 0, 0]\nfov_y = 45\nnear = 0.1\nfar = 100.0\n\n[[object]]\nmesh = { shape = \"quad\", size = [1, 1] }\n";
+    fs::write(&scene, text).unwrap();
+    w.state_mut().open(Source::named(&scene), None);
+    assert_eq!(w.state().messages.0, []);
+    let context = w.ctx.clone();
+    w.state_mut().begin_training(&context);
+    until(&mut w, "failed", |app| !app.training.is_busy());
+    let [(true, said)] = &w.state().messages.0[..] else {
+        panic!("{:?}", w.state().messages.0)
+    };
+    assert!(said.contains("nothing to learn from"), "{said}");
 }
 
 #[test]

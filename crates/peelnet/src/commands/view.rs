@@ -54,11 +54,12 @@ pub(super) fn run(context: &Context<'_>, args: &ViewArgs) -> Result<(), Failure>
         time: args.time,
         files_from: context.global.files_from.clone(),
         bare: args.bare,
-        script: is_script.then(|| Script::new(args.frames.unwrap_or(1), args.screenshot.clone())),
+        train: args.train,
+        script: is_script.then(|| Script::new(args.frames, args.screenshot.clone())),
         ..Start::new(&args.scene, args.method.clone())
     };
     let costs = peelnet_view::open(&gpu, start, args.size).map_err(Failure::failed)?;
-    if let Some(costs) = costs.filter(|_| args.frames.is_some()) {
+    if let Some(costs) = costs.filter(|_| args.frames.is_some() || args.train.is_some()) {
         context.console.message(costs);
     }
     if let Some(path) = &args.screenshot {

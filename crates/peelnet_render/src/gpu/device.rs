@@ -63,6 +63,13 @@ impl Gpu {
     pub async fn open_async(request: &AdapterRequest) -> Result<Self, GpuError> {
         let (instance, adapters) = adapter::enumerate().await;
         let adapter = adapter::pick(adapters, request)?;
+        Self::on_adapter(instance, adapter).await
+    }
+
+    async fn on_adapter(
+        instance: wgpu::Instance,
+        adapter: wgpu::Adapter,
+    ) -> Result<Self, GpuError> {
         let optional = OPTIONAL_FEATURES.iter().map(|f| f.flag);
         let optional = optional.fold(wgpu::Features::empty(), |all, flag| all | flag);
         let (device, queue) = adapter
@@ -105,6 +112,16 @@ impl Gpu {
     #[cfg(not(target_arch = "wasm32"))]
     pub fn open(request: &AdapterRequest) -> Result<Self, GpuError> {
         pollster::block_on(Self::open_async(request))
+    }
+
+    /// Another device of the same adapter, with a queue of its own: work of another thread, which the frames of this device do not wait for.
+    ///
+    /// # Errors
+    /// A driver that opens no second device.
+    #[cfg(not(target_arch = "wasm32"))]
+    pub fn open_another(&self) -> Result<Self, GpuError> {
+        let (instance, adapter) = (self.instance.clone(), self.adapter.clone());
+        pollster::block_on(Self::on_adapter(instance, adapter))
     }
 
     /// An application's own device. Its error and device-lost handlers stay the application's: errors of ours arrive there.

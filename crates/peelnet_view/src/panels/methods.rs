@@ -202,11 +202,14 @@ fn chosen(
 
 fn network(app: &mut App, ui: &mut Ui) {
     let own = app.first.own_network();
-    if let Some(name) = own.map(|n| peelnet_core::files::shown(&n.path)) {
+    let name = |path| peelnet_core::files::shown(path);
+    let trained = || "trained here, not exported".into();
+    if let Some(name) = own.map(|n| n.path.as_deref().map_or_else(trained, name)) {
         ui.horizontal_wrapped(|ui| {
             let about = "Read again whenever the file changes, as while peelnet train writes it";
             ui.label(format!("Network: {name}")).on_hover_text(about);
             if ui.button("Use the shipped one").clicked() {
+                app.training.abandon();
                 app.first.set_network(None);
                 app.watch.follow(None);
             }

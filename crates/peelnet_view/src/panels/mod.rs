@@ -8,8 +8,12 @@ mod pixel;
 mod scene;
 pub(crate) mod state;
 mod top;
+#[cfg(not(target_arch = "wasm32"))]
+mod training;
 
 use crate::app::App;
+#[cfg(target_arch = "wasm32")]
+use crate::web::training;
 use eframe::egui_wgpu::RenderState;
 use egui::{CentralPanel, Panel, ScrollArea, Ui};
 
@@ -65,8 +69,9 @@ fn column(panel: Panel, size: f32, ui: &mut Ui, add: impl FnOnce(&mut Ui)) {
 type Section = (&'static str, bool, fn(&mut App, &mut Ui));
 
 fn controls(app: &mut App, ui: &mut Ui) {
-    let all: [Section; 7] = [
+    let all: [Section; 8] = [
         ("Method", true, methods::show),
+        ("Training", app.awaits_training(), training::show),
         ("Compare", true, methods::compare),
         ("Camera", true, scene::camera),
         ("Layers", false, scene::layers),

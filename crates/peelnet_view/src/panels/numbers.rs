@@ -15,6 +15,12 @@ pub(super) fn show(app: &mut App, ui: &mut Ui) {
         Some(Ok(numbers)) => table(ui, "numbers", errors(numbers, app.size)),
         Some(Err(e)) => error(ui, e),
         None if app.errors.is_busy() => {
+            // While a network is trained, its last error stays: there is a new one every epoch.
+            if let Some((of, Ok(numbers))) = &app.errors.last
+                && (&of.view, &of.method) == (&key.view, &key.method)
+            {
+                table(ui, "numbers", errors(numbers, app.size));
+            }
             ui.horizontal(|ui| {
                 ui.spinner();
                 ui.label("measuring");

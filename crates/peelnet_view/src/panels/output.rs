@@ -50,6 +50,11 @@ pub(super) fn show(app: &mut App, ui: &mut Ui) {
             }
         });
     }
+    said(app, ui);
+}
+
+/// What was saved, or why not.
+pub(super) fn said(app: &App, ui: &mut Ui) {
     match app.output.last() {
         Some(Ok(text)) => drop(ui.label(text)),
         Some(Err(e)) => error(ui, e),

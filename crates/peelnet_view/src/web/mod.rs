@@ -5,6 +5,7 @@ mod files;
 mod handle;
 pub(crate) mod in_page;
 mod shelf;
+pub(crate) mod training;
 
 use crate::{
     address,
