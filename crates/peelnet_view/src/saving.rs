@@ -40,7 +40,7 @@ impl App {
     /// Draws the view into a file, as `peelnet render` does.
     pub(crate) fn save_picture(&mut self, ending: &str) {
         let Some(stage) = &self.stage else { return };
-        let path = free_name(stage, &self.first, ending);
+        let path = free_name(Path::new(""), stage, &self.first, ending);
         let (shot, camera) = (self.first.shot(stage, self.size), self.camera);
         self.output.progress.set((0, 1));
         self.output.job.begin((), async move {
@@ -52,7 +52,7 @@ impl App {
     /// Draws numbered frames into a new folder: of one turn about the target, or of the timeline from its first state to its last.
     pub(crate) fn save_frames(&mut self, timeline: bool, count: u32) {
         let Some(stage) = &self.stage else { return };
-        let folder = free_name(stage, &self.first, "-frames");
+        let folder = free_name(Path::new(""), stage, &self.first, "-frames");
         let mut shot = self.first.shot(stage, self.size);
         let (gpu, source, camera) = (stage.gpu.clone(), stage.source.clone(), self.camera);
         let times = stage.times().filter(|_| timeline);
@@ -83,9 +83,9 @@ impl App {
     /// Saves the scene with its changes beside the file it came from, and says what such a file cannot hold.
     pub(crate) fn save_scene(&mut self) {
         let Some(stage) = &self.stage else { return };
-        let name = free_name(stage, &self.first, ".toml");
+        let name = free_name(&stage.source.folder(), stage, &self.first, ".toml");
         let saved = stage.edited(&self.camera).and_then(|edited| {
-            let said = keep(&stage.source.folder().join(name), edited.text.as_bytes())?;
+            let said = keep(&name, edited.text.as_bytes())?;
             Ok(match edited.left_out.join("; without ") {
                 left_out if left_out.is_empty() => said,
                 left_out => format!("{said}, without {left_out}"),
@@ -94,12 +94,14 @@ impl App {
         self.output.show(saved);
     }
 
-    /// Writes the network that is drawn, and its text as WGSL, into two new files.
+    /// Writes the network that is drawn, and its text as WGSL, into two new files beside the scene.
     pub(crate) fn export_network(&mut self) {
         let (Some(stage), Some(model)) = (&self.stage, self.first.model()) else {
             return;
         };
-        let names = [".safetensors", ".wgsl"].map(|e| free_name(stage, &self.first, e));
+        let folder = stage.source.folder();
+        let names = [".safetensors", ".wgsl"];
+        let names = names.map(|ending| free_name(&folder, stage, &self.first, ending));
         let exported = || -> Fallible<String> {
             let text = peelnet_export::wgsl(&model)?;
             let first = keep(&names[0], &model.to_bytes()?)?;
@@ -163,7 +165,7 @@ fn keep(path: &Path, bytes: &[u8]) -> Fallible<String> {
 }
 
 /// A name for a file of this view that is still free, of letters that every file system takes.
-fn free_name(stage: &Stage, slot: &Slot, ending: &str) -> PathBuf {
+fn free_name(folder: &Path, stage: &Stage, slot: &Slot, ending: &str) -> PathBuf {
     let plain = |text: &str| -> String {
         let is_plain = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '.';
         let plain = text.chars().map(|c| if is_plain(c) { c } else { '_' });
@@ -172,7 +174,7 @@ fn free_name(stage: &Stage, slot: &Slot, ending: &str) -> PathBuf {
     let (scene, method) = (plain(&stage.scene.name), plain(&slot.spec.to_string()));
     let numbers = (1..10_000).map(|n| format!("-{n}"));
     let names = std::iter::once(String::new()).chain(numbers);
-    let mut paths = names.map(|n| PathBuf::from(format!("{scene}-{method}{n}{ending}")));
+    let mut paths = names.map(|n| folder.join(format!("{scene}-{method}{n}{ending}")));
     let free = paths.find(|path| !path.exists());
-    free.unwrap_or_else(|| format!("{scene}-{method}-10000{ending}").into())
+    free.unwrap_or_else(|| folder.join(format!("{scene}-{method}-10000{ending}")))
 }

@@ -51,6 +51,8 @@ pub(crate) struct Slot {
     /// From a file; the method may be another one's.
     pub network: Option<Network>,
     prepared: Option<(u64, Prepared)>,
+    /// While it is made ready anew.
+    stats: FrameStats,
     pub picture: Option<wgpu::TextureView>,
     shown: Option<View>,
     pub status: FrameStatus,
@@ -65,11 +67,12 @@ pub(crate) struct Slot {
 }
 
 impl Slot {
-    pub const fn new(spec: MethodSpec) -> Self {
+    pub fn new(spec: MethodSpec) -> Self {
         Self {
             spec,
             network: None,
             prepared: None,
+            stats: FrameStats::default(),
             picture: None,
             shown: None,
             status: FrameStatus::Unknown,
@@ -119,23 +122,30 @@ impl Slot {
         let was_own = self.own_network().is_some();
         self.network = network;
         if was_own || self.own_network().is_some() {
-            self.forget();
+            // Times and passes stay until others are known: of the same method they hardly differ.
+            self.stats = self.stats();
+            self.renew();
         }
     }
 
-    /// Makes the method ready anew, at the next frame.
+    /// Makes the method ready anew, at the next frame; nothing is known of it before.
     pub fn forget(&mut self) {
-        self.prepared = None;
-        self.shown = None;
-        self.status = FrameStatus::Unknown;
-        self.failure = None;
+        self.renew();
+        self.stats = FrameStats::default();
         self.timing = None;
         self.times.clear();
     }
 
+    fn renew(&mut self) {
+        self.prepared = None;
+        self.shown = None;
+        self.status = FrameStatus::Unknown;
+        self.failure = None;
+    }
+
     pub fn stats(&self) -> FrameStats {
         let prepared = self.prepared.as_ref();
-        prepared.map(|(_, p)| p.stats()).unwrap_or_default()
+        prepared.map_or(self.stats, |(_, p)| p.stats())
     }
 
     /// GPU time of the last frame that is known of, milliseconds.

@@ -455,7 +455,10 @@ fn error(w: &Window) -> f64 {
 /// The picture follows: another network after the first, and at the end a better one, which is exported.
 #[test]
 fn the_picture_follows_a_training() {
-    let mut w = training("boxes", 200);
+    let folder = tempfile::tempdir().unwrap();
+    let scene = folder.path().join("mine.toml");
+    fs::write(&scene, suite::find("boxes").unwrap().text).unwrap();
+    let mut w = training(scene.to_str().unwrap(), 200);
     let (first, first_error) = (trained(&w), error(&w));
     until(&mut w, "another network", |app| {
         app.first.own_network().unwrap().number != first.0
@@ -472,8 +475,15 @@ fn the_picture_follows_a_training() {
     app.panels.measures = true;
     until(&mut w, "measured", |app| !app.awaits_training());
     let text = w.state().training.text().unwrap();
-    assert!(text.contains("trained 200 epochs in "), "{text}");
+    assert!(text.contains("trained 200 epochs of 200 in "), "{text}");
     assert!(text.contains("; MSE of the view "), "{text}");
+    press(&mut w, "Export network");
+    let network = w.state().first.own_network().unwrap();
+    let exported = network.path.clone().unwrap();
+    assert_eq!(Model::load(&exported).unwrap(), network.model);
+    let text = fs::read_to_string(exported.with_extension("wgsl")).unwrap();
+    assert_eq!(text, network.weight.wgsl);
+    assert!(w.state().command().unwrap().contains("--model="));
 }
 
 /// Stop keeps the last whole epoch.
@@ -484,7 +494,7 @@ fn a_training_is_stopped() {
     until(&mut w, "stopped", |app| !app.training.is_busy());
     let history = w.state().training.history.len();
     assert_eq!(trained(&w).1 as usize, history);
-    assert!(history < 100_000);
+    assert!(history < 100_000, "it was not stopped");
     assert_eq!(w.state().messages.0, []);
     w.get_by_label("Train on this scene");
 }

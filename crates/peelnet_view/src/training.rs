@@ -33,6 +33,9 @@ const LEAST_PAUSE: f64 = 0.25;
 /// To make a network ready stops the window, because its pipelines are compiled. The pause is this many times as long.
 const PAUSE: f64 = 4.0;
 
+/// The next network waits at most so long for the error of the one that is drawn, seconds.
+const MEASURING: f64 = 2.0;
+
 /// Errors are compared with this many times the last one.
 const NEAR: f64 = 1.2;
 
@@ -171,7 +174,7 @@ impl Training {
             let far = all.iter().rposition(|(_, error)| *error > NEAR * end);
             let (seconds, _) = all[far.map_or(0, |k| k + 1)];
             Some(format!(
-                "{end:.4e}, within {NEAR} of it after {seconds:.1} s"
+                "{end:.3e}, at most {NEAR} times that from {seconds:.1} s on"
             ))
         };
         let losses: Vec<_> = self.history.iter().map(|e| (e.seconds, e.loss())).collect();
@@ -180,8 +183,9 @@ impl Training {
             .filter_map(|d| Some((d.seconds, d.mse255?)))
             .collect();
         let mut text = format!(
-            "trained {} in {:.1} s, the first after {:.1} s",
+            "trained {} of {} in {:.1} s, the first after {:.1} s",
             counted(self.history.len() as u64, "epoch"),
+            last.report.epochs,
             last.seconds,
             self.history[0].seconds
         );
@@ -191,7 +195,7 @@ impl Training {
         for d in &self.drawn {
             let mse = d
                 .mse255
-                .map_or("not measured".into(), |x| format!("MSE {x:.2}"));
+                .map_or("not measured".into(), |x| format!("MSE {x:.4}"));
             text += &format!("\n{:.1} s: epoch {}, {mse}", d.seconds, d.epoch);
         }
         Some(text)
@@ -253,9 +257,12 @@ impl App {
         let Some(Running { shared, thread }) = &training.running else {
             return;
         };
-        let pause = LEAST_PAUSE.max(PAUSE * self.first.ready_ms / 1e3);
-        let is_first = training.drawn.is_empty();
-        let is_due = is_first || training.swapped.elapsed().as_secs_f64() >= pause;
+        let is_due = training.drawn.last().is_none_or(|last| {
+            let is_measured = last.mse255.is_some() || !self.panels.measures;
+            let wait = if is_measured { LEAST_PAUSE } else { MEASURING };
+            let pause = wait.max(PAUSE * self.first.ready_ms / 1e3);
+            training.swapped.elapsed().as_secs_f64() >= pause
+        });
         let has_ended = thread.as_ref().is_none_or(JoinHandle::is_finished);
         let mut news = shared.news();
         let panicked = || has_ended.then(|| Err("the training failed".to_owned()));

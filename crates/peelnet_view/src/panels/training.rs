@@ -7,7 +7,8 @@ use peelnet_model::Recipe;
 
 const TRAIN: &str = "Peels the scene's views and trains in the background; the picture follows";
 const STOP: &str = "Draws with the network of the last whole epoch";
-const EXPORT: &str = "The network that is drawn, as .safetensors and as .wgsl, in new files";
+const EXPORT: &str =
+    "The network that is drawn, as .safetensors and as .wgsl, in new files beside the scene";
 
 pub(super) fn show(app: &mut App, ui: &mut Ui) {
     let busy = app.training.is_busy();
