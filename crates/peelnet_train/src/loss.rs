@@ -271,8 +271,7 @@ mod tests {
         let exact = |row: usize| value(&data.targets[0], row);
         let alpha = |row: usize| value(&pixels.rows[ALPHA], row);
         let k: Vec<f64> = rows.iter().map(|&r| alpha(r) * through(r)).collect();
-        let scale =
-            fixed(LEFT) / (fixed(SUM) + f64::from(SUM_FLOOR as f32) + k.iter().sum::<f64>());
+        let scale = fixed(LEFT) / (fixed(SUM) + f64::from(SUM_FLOOR) + k.iter().sum::<f64>());
         let both = || rows.iter().zip(&k);
         weight
             * match config.loss.unwrap() {
