@@ -308,8 +308,7 @@ impl App {
             self.open_network(Source::named(path));
         }
         if let Some(recipe) = self.train.take() {
-            self.training.recipe = Some(recipe);
-            self.begin_training(ui);
+            self.begin_training(ui, Some(recipe));
         }
         self.poll_training(ui);
     }

@@ -524,7 +524,7 @@ fn a_training_that_fails_says_why() {
     w.state_mut().open(Source::named(&scene), None);
     assert_eq!(w.state().messages.0, []);
     let context = w.ctx.clone();
-    w.state_mut().begin_training(&context);
+    w.state_mut().begin_training(&context, None);
     until(&mut w, "failed", |app| !app.training.is_busy());
     let [(true, said)] = &w.state().messages.0[..] else {
         panic!("{:?}", w.state().messages.0)

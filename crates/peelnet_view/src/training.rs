@@ -209,7 +209,9 @@ impl App {
         self.training.recipe.or_else(shown).unwrap_or(Recipe::SMALL)
     }
 
-    pub(crate) fn begin_training(&mut self, ui: &Context) {
+    /// Peels and trains; without a recipe what the panel says.
+    pub(crate) fn begin_training(&mut self, ui: &Context, recipe: Option<Recipe>) {
+        self.training.recipe = recipe.or(self.training.recipe);
         let config = Config::for_recipe(self.recipe());
         let config = Config {
             epochs: self.training.epochs.unwrap_or(config.epochs),

@@ -19,7 +19,7 @@ pub(super) fn show(app: &mut App, ui: &mut Ui) {
             let train = egui::Button::new("Train on this scene");
             let train = ui.add_enabled(is_open, train).on_hover_text(TRAIN);
             if train.clicked() {
-                app.begin_training(ui.ctx());
+                app.begin_training(ui.ctx(), None);
             }
         } else if app.training.is_stopping() {
             ui.label("stopping");

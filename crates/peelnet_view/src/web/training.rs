@@ -6,7 +6,6 @@ use peelnet_model::Recipe;
 
 #[derive(Default)]
 pub(crate) struct Training {
-    pub recipe: Option<Recipe>,
     pub failure: Option<String>,
 }
 
@@ -19,7 +18,7 @@ impl Training {
 }
 
 impl App {
-    pub(crate) const fn begin_training(&mut self, _: &Context) {}
+    pub(crate) const fn begin_training(&mut self, _: &Context, _: Option<Recipe>) {}
 
     pub(crate) const fn poll_training(&mut self, _: &Context) {}
 
