@@ -109,6 +109,7 @@ impl App {
         };
         let exported = exported();
         if exported.is_ok()
+            && self.first.own_network().is_some()
             && let Some(network) = &mut self.first.network
         {
             let [file, _] = names;

@@ -8,6 +8,8 @@ use peelnet_export::Language;
 const PICTURE: &str = "This view by this method, as peelnet render writes it";
 const SCENE: &str =
     "A new scene file with this camera and all changes, beside the one that is open";
+pub(super) const NETWORK: &str =
+    "The network that is drawn, as .safetensors and as .wgsl, in new files beside the scene";
 const FRAMES: &str = "Numbered PNG files in a new folder";
 
 pub(super) fn show(app: &mut App, ui: &mut Ui) {
@@ -41,6 +43,9 @@ pub(super) fn show(app: &mut App, ui: &mut Ui) {
         ui.horizontal_wrapped(|ui| films(app, ui));
     }
     if app.first.spec.needs_model() {
+        if button(ui, "Export network", NETWORK) {
+            app.export_network();
+        }
         ui.horizontal_wrapped(|ui| {
             ui.label("Shader text:");
             for language in Language::ALL {

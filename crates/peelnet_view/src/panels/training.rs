@@ -7,8 +7,6 @@ use peelnet_model::Recipe;
 
 const TRAIN: &str = "Peels the scene's views and trains in the background; the picture follows";
 const STOP: &str = "Draws with the network of the last whole epoch";
-const EXPORT: &str =
-    "The network that is drawn, as .safetensors and as .wgsl, in new files beside the scene";
 
 pub(super) fn show(app: &mut App, ui: &mut Ui) {
     let busy = app.training.is_busy();
@@ -27,7 +25,7 @@ pub(super) fn show(app: &mut App, ui: &mut Ui) {
             app.training.stop();
         }
         let own = app.first.own_network();
-        if own.is_some() && button(ui, "Export network", EXPORT) {
+        if own.is_some() && button(ui, "Export network", output::NETWORK) {
             app.export_network();
         }
     });
