@@ -19,12 +19,12 @@ fn triangle() -> Vec<u8> {
     });
     let mut text = document.to_string().into_bytes();
     text.resize(text.len().next_multiple_of(4), b' ');
-    let corners = [0f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
-    let corners: Vec<u8> = corners.into_iter().flat_map(f32::to_le_bytes).collect();
+    let vertices = [0f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
+    let vertices: Vec<u8> = vertices.into_iter().flat_map(f32::to_le_bytes).collect();
     let mut file = b"glTF\x02\0\0\0".to_vec();
-    let length = (28 + text.len() + corners.len()) as u32;
+    let length = (28 + text.len() + vertices.len()) as u32;
     file.extend(length.to_le_bytes());
-    for (kind, chunk) in [(b"JSON", &text), (b"BIN\0", &corners)] {
+    for (kind, chunk) in [(b"JSON", &text), (b"BIN\0", &vertices)] {
         file.extend((chunk.len() as u32).to_le_bytes());
         file.extend(kind);
         file.extend(chunk);

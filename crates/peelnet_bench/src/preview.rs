@@ -1,4 +1,4 @@
-//! What an extraction would write: its rows are peeled and counted, and its views are drawn. Nothing is written.
+//! What an extraction would write: its rows are peeled and counted, or estimated from one view, and its views are drawn. Nothing is written.
 
 use crate::{
     EvalError,
@@ -7,8 +7,8 @@ use crate::{
 use peelnet_dataset::{Format, FragmentBatch, Part, Summary, summary::Bin};
 use peelnet_peel::{ExtractOptions, PeelError, items::items, peel_rows};
 use peelnet_render::gpu::Gpu;
-use peelnet_render::{Image, MethodOptions, RenderError, Renderer};
-use peelnet_scene::Scene;
+use peelnet_render::{FrameStats, Image, MethodOptions, RenderError, Renderer};
+use peelnet_scene::{Camera, Scene};
 use serde::Serialize;
 use std::{
     collections::BTreeMap,
@@ -125,6 +125,23 @@ pub fn measure(
         });
     }
     Ok(preview)
+}
+
+/// Draws a view exactly, which counts its fragments: without lights, which are of none.
+///
+/// # Errors
+/// As drawing does.
+pub fn count(
+    gpu: &Gpu,
+    scene: &Scene,
+    camera: &Camera,
+    size: [u32; 2],
+) -> Result<FrameStats, RenderError> {
+    let mut unlit = scene.clone();
+    unlit.lights.clear();
+    let renderer = Renderer::new(gpu, &unlit)?;
+    let mut exact = renderer.method(&EXACT.parse()?, MethodOptions::sized(size))?;
+    Ok(renderer.image(&mut exact, camera)?.stats)
 }
 
 /// Draws the first views exactly, small.

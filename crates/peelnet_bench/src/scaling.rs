@@ -54,7 +54,7 @@ fn steps() -> Vec<Step> {
     fragments.chain(pixels).chain(triangles).collect()
 }
 
-/// Measures the methods of a plan in all steps, so many timed frames of each after one that warms up; the steps have their own sizes.
+/// Measures the methods of a plan in all steps, so many timed frames of each; the steps have their own sizes.
 pub fn measure(
     gpu: &Gpu,
     plan: &Plan<'_>,
@@ -84,7 +84,7 @@ pub fn measure(
                     size: step.size,
                     ..plan.options(method)
                 };
-                // The first frame warms up, and gives the bytes.
+                // The first frame gives the bytes.
                 let first = stage.ready(method, options).and_then(|mut ready| {
                     let frame = stage.image(&mut ready, camera)?;
                     Ok((ready, frame.stats.bytes_per_pixel))

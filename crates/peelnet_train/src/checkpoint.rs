@@ -17,6 +17,9 @@ use crate::report::{EpochReport, HISTORY_KIND};
 const VERSION: u32 = 2;
 const KEY: &str = "peelnet_training_state";
 
+/// The losses of every epoch.
+pub(crate) const LOSSES: &str = "loss.csv";
+
 /// The files of a checkpoint's folder, and by what they are known.
 pub const FILES: [(&str, Kind); 4] = [
     (
@@ -28,7 +31,7 @@ pub const FILES: [(&str, Kind); 4] = [
     ),
     ("best.safetensors", peelnet_model::KIND),
     ("last.safetensors", peelnet_model::KIND),
-    ("loss.csv", HISTORY_KIND),
+    (LOSSES, HISTORY_KIND),
 ];
 
 /// What a training that begins anew replaces: not the hours of one that was interrupted.

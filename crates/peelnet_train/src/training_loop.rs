@@ -344,7 +344,7 @@ impl Run<'_> {
         let best = best.map(|(epoch, best)| ("best", *epoch, best));
         let models = best.chain([last]).filter(|_| !history.is_empty());
         if !history.is_empty() {
-            let path = self.folder.join(checkpoint::FILES[3].0);
+            let path = self.folder.join(checkpoint::LOSSES);
             write_whole(&path, history_csv(history).as_bytes()).map_err(io(&path))?;
         }
         for (name, epoch, parameters) in models {

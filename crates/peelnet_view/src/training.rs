@@ -3,18 +3,17 @@
 
 use crate::{
     app::App,
-    numbers::EXACT,
     slot::Network,
     stage::Stage,
     task::{Fallible, one_line},
 };
 use egui::Context;
+use peelnet_bench::preview;
 use peelnet_core::files::counted;
 use peelnet_dataset::Dataset;
 use peelnet_model::{Model, Recipe};
 use peelnet_peel::{ExtractOptions, PeelError, extract};
 use peelnet_render::gpu::Gpu;
-use peelnet_render::{MethodOptions, Renderer};
 use peelnet_scene::Scene;
 use peelnet_train::{Config, EpochReport, RunOptions, TrainingData, train_watched};
 use std::{
@@ -336,7 +335,9 @@ fn work(
     config.check()?;
     let gpu = gpu.open_another()?;
     let folder = tempfile::tempdir()?;
-    let fragments = fragments(&gpu, &scene, size)? * scene.views.len() as u64;
+    let camera = scene.views.first().ok_or("the scene has no view")?;
+    let of_view = preview::count(&gpu, &scene, camera, size)?.fragments;
+    let fragments = of_view.unwrap_or(0) * scene.views.len() as u64;
     if fragments == 0 {
         return Err("view 0 has no transparent fragment, so there is nothing to learn from".into());
     }
@@ -370,15 +371,4 @@ fn work(
         });
     })?;
     Ok(())
-}
-
-/// Fragments of view 0, without lights, which are of none.
-fn fragments(gpu: &Gpu, scene: &Scene, size: [u32; 2]) -> Fallible<u64> {
-    let mut unlit = scene.clone();
-    unlit.lights.clear();
-    let camera = scene.views.first().ok_or("the scene has no view")?;
-    let renderer = Renderer::new(gpu, &unlit)?;
-    let mut exact = renderer.method(&EXACT.parse()?, MethodOptions::sized(size))?;
-    let stats = renderer.image(&mut exact, camera)?.stats;
-    Ok(stats.fragments.unwrap_or(0))
 }

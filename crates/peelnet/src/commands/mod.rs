@@ -15,13 +15,12 @@ use crate::console::Console;
 use crate::interrupt;
 use crate::progress::Bar;
 use peelnet::{Failure, model_for, weight_of};
-use peelnet_bench::Partial;
-use peelnet_bench::compare::EXACT;
 use peelnet_bench::report::{Measurement, Results, kind_of};
+use peelnet_bench::{Partial, preview};
 use peelnet_core::files::{Outputs, error_line, printable, shown};
 use peelnet_model::Model;
 use peelnet_render::gpu::Gpu;
-use peelnet_render::{FrameStats, ImageFormat, LearnedWeight, MethodOptions, MethodSpec, Renderer};
+use peelnet_render::{FrameStats, ImageFormat, LearnedWeight, MethodSpec};
 use peelnet_scene::{Scene, SceneError, suite};
 use peelnet_train::OutputLock;
 use std::path::{Path, PathBuf};
@@ -194,14 +193,10 @@ impl Drop for Begun {
     }
 }
 
-/// Draws view 0 exactly, which counts its fragments: without lights, which are of none.
+/// Counts the fragments of view 0.
 fn count(gpu: &Gpu, scene: &Scene, size: [u32; 2]) -> Result<FrameStats, Failure> {
     let camera = peelnet::view_of(scene, 0)?;
-    let mut unlit = scene.clone();
-    unlit.lights.clear();
-    let renderer = Renderer::new(gpu, &unlit)?;
-    let mut exact = renderer.method(&EXACT.parse()?, MethodOptions::sized(size))?;
-    Ok(renderer.image(&mut exact, camera)?.stats)
+    Ok(preview::count(gpu, scene, camera, size)?)
 }
 
 /// The losses of a model that are known, with the names of their rows.

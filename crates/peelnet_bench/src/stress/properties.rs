@@ -146,8 +146,8 @@ impl Subject {
     ///
     /// A sum of `n` terms that are not negative errs by `n` roundings of itself, and so does a product, whatever their order: two
     /// orders differ by twice as much. The colour is a quotient of two sums times `1 − T`, plus `T C_0`: its first part changes by
-    /// four times `n` roundings of what it shows, and an error of `T` moves both parts. `1 − T` rounds once more, in 32 bits. What is reconstructed from statistics adds its
-    /// own: a share of the absorbance, and `e^−b·share` changes by `b` times as much at most.
+    /// four times `n` roundings of what it shows, and an error of `T` moves both parts. `1 − T` rounds once more, in 32 bits.
+    /// What is reconstructed from statistics adds its own: a share of the absorbance, and `e^−b·share` changes by `b` times as much at most.
     fn order_limits(&self, kind: &Kind, shown: f64) -> [f64; 2] {
         if self.guarantees.sorted {
             return [0.0; 2];
