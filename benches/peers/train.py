@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Rows a second of training: PyTorch and peelnet's trainer, side by side on this machine.
+"""Rows a second of training: PyTorch, a loop written for the thesis's network alone, and peelnet's trainer, side by side on this machine.
 
     python3 benches/peers/train.py [--rows 262144] [--rounds 5] [--out out/peers]
 
@@ -104,6 +104,11 @@ def main():
     run("cargo", "build", "--release", "--quiet", "-p", "peelnet_train", "--example", "throughput", cwd=ROOT)
     target = pathlib.Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target"))
     ours = target / "release" / "examples" / "throughput"
+    loop = out / "simd_loop"
+    # Without this all of its arrays stay in memory, at a third of the speed.
+    unroll = "llvm-args=-unroll-threshold=2000"
+    rustc = ["rustc", "--edition", "2024", "-C", "opt-level=3", "-C", "target-cpu=native", "-C", unroll]
+    run(*rustc, "-o", loop, HERE / "simd_loop.rs")
     data = out / f"rows-{arguments.rows}.f32"
     if not data.exists():
         synthetic(data, arguments.rows)
@@ -117,6 +122,7 @@ def main():
         common = [data, arguments.rows, batch, epochs]
         yield from ((("pytorch", n), [python, torch_script, *common, n]) for n in threads)
         yield from ((("peelnet", n), [ours, *common, n]) for n in threads)
+        yield ("loop", 1), [loop, *common]
 
     rates, losses = {}, {}
     for round_number in range(arguments.rounds):
@@ -130,17 +136,18 @@ def main():
     version = run(python, "-c", "import torch; print(torch.__version__)", capture_output=True, text=True).stdout.strip()
     print(f"{processor()}, {cores} cores; PyTorch {version}; {arguments.rows:,} rows, medians of {arguments.rounds} rounds;")
     print("million rows a second, the best number of threads in brackets.\n")
-    print("| batch | PyTorch | peelnet | peelnet / PyTorch |")
-    print("|---|---|---|---|")
+    print("| batch | PyTorch | the loop | peelnet | on one thread | peelnet / PyTorch | one thread / the loop |")
+    print("|---|---|---|---|---|---|---|")
     for batch in BATCHES:
 
         def best(name):
             return max((statistics.median(v), who[1]) for (b, who), v in rates.items() if b == batch and who[0] == name)
 
-        torch, peelnet = best("pytorch"), best("peelnet")
+        torch, peelnet, (loop, _) = best("pytorch"), best("peelnet"), best("loop")
+        single = statistics.median(rates[batch, ("peelnet", 1)])
         print(
-            f"| {batch:,} | {torch[0] / 1e6:.2f} ({torch[1]}) | {peelnet[0] / 1e6:.2f} ({peelnet[1]}) "
-            f"| {peelnet[0] / torch[0]:.2f} |"
+            f"| {batch:,} | {torch[0] / 1e6:.2f} ({torch[1]}) | {loop / 1e6:.2f} | {peelnet[0] / 1e6:.2f} ({peelnet[1]}) "
+            f"| {single / 1e6:.2f} | {peelnet[0] / torch[0]:.2f} | {single / loop:.2f} |"
         )
     print(f"\nMean squared error in epoch {epochs}, to see that all of them train (initial weights differ):")
     for batch in BATCHES:

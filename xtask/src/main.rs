@@ -52,7 +52,7 @@ cargo xtask <command>
                   lints of deploy/; datasets and models in an S3 server; Ray with two nodes in a network namespace: scenes extracted to S3
                   (or folders) while a worker and a node are killed, compared with one process
   languages       compile the exported texts with glslangValidator and DXC (installed from Debian and PyPI)
-  peers           training against PyTorch, transparency against VTK, three.js and others (installed from PyPI and npm into out/peers)
+  peers           training and its gradients against PyTorch, transparency against VTK, three.js and others (installed from PyPI and npm into out/peers)
 
 Tools that are missing (a Vulkan driver, Chromium, subcommands of cargo) are installed, with a line that says so.
 ";
@@ -77,8 +77,7 @@ fn main() -> ExitCode {
         ["view-test", ref steps @ ..] => suites::view(steps),
         ["fuzz"] => suites::fuzz("1800"),
         ["fuzz", seconds] => suites::fuzz(seconds),
-        ["peers"] => run("python3 benches/peers/train.py")
-            .and_then(|()| run("python3 benches/peers/transparency.py")),
+        ["peers"] => suites::peers(),
         ["python"] => suites::python("test"),
         ["python", "--ray"] => suites::python("test,ray,readers"),
         ["cluster", ref rest @ ..] => suites::cluster(rest),

@@ -47,6 +47,21 @@ pub fn find(name: &str) -> Option<fn() -> Outcome> {
     suite.map(|(_, run)| *run)
 }
 
+/// Training and its gradients against PyTorch, transparency against other renderers.
+pub fn peers() -> Outcome {
+    run("python3 benches/peers/train.py")?;
+    let python = if cfg!(windows) {
+        "Scripts/python.exe"
+    } else {
+        "bin/python"
+    };
+    let python = root().join("out/peers/venv").join(python);
+    let test = "--lib gradients_are_pytorchs -- --ignored";
+    let mut test = command(&format!("cargo test --release -p peelnet_train {test}"));
+    start(test.env("PEELNET_PYTORCH", python))?;
+    run("python3 benches/peers/transparency.py")
+}
+
 /// The Bevy plugin, a workspace of its own: its lints and tests, its comparison against the exact image, and a page in Chromium.
 fn bevy() -> Outcome {
     ensure_driver()?;

@@ -3,7 +3,6 @@
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
-use burn::tensor::{Device, Tensor, TensorData};
 use peelnet_core::files::{Kind, holds};
 use safetensors::tensor::{Dtype, SafeTensors, TensorView};
 use serde::{Deserialize, Serialize};
@@ -64,7 +63,7 @@ pub fn folder(out: &Path) -> PathBuf {
 pub(crate) struct Progress {
     pub(crate) adam: Adam,
     /// Epoch and parameters with the lowest loss so far.
-    pub(crate) best: Option<(u32, Tensor<1>)>,
+    pub(crate) best: Option<(u32, Vec<f32>)>,
     pub(crate) history: Vec<EpochReport>,
 }
 
@@ -112,8 +111,7 @@ impl Progress {
         tensors.extend(self.best.iter().map(|(_, best)| ("best_parameters", best)));
         let mut tensors: Vec<_> = tensors
             .into_iter()
-            .map(|(name, tensor)| {
-                let values = download(tensor);
+            .map(|(name, values)| {
                 let bytes: Vec<u8> = values.iter().flat_map(|v| v.to_le_bytes()).collect();
                 (name, Dtype::F32, vec![values.len()], bytes)
             })
@@ -152,7 +150,6 @@ impl Progress {
         config: &Config,
         data: &str,
         parameters: usize,
-        device: &Device,
     ) -> Result<Self, TrainError> {
         let path = folder.join(FILES[0].0);
         // No state has more bytes: four tensors of parameters, the history, and a header.
@@ -162,18 +159,12 @@ impl Progress {
             Err(e) if e.kind() == std::io::ErrorKind::NotFound => {
                 Err("there is no such file, so there is nothing to resume".to_owned())
             }
-            read => Self::parse(&read.map_err(io(&path))?, config, data, parameters, device),
+            read => Self::parse(&read.map_err(io(&path))?, config, data, parameters),
         };
         read.map_err(|problem| TrainError::Checkpoint { path, problem })
     }
 
-    fn parse(
-        bytes: &[u8],
-        config: &Config,
-        data: &str,
-        parameters: usize,
-        device: &Device,
-    ) -> Result<Self, String> {
+    fn parse(bytes: &[u8], config: &Config, data: &str, parameters: usize) -> Result<Self, String> {
         let (_, metadata) = SafeTensors::read_metadata(bytes).map_err(damaged)?;
         let header = metadata.metadata().as_ref().and_then(|m| m.get(KEY));
         let header = header.ok_or_else(|| damaged("no training state in it"))?;
@@ -207,10 +198,10 @@ impl Progress {
             }
             Ok(tensor.data())
         };
-        let floats = |name: &str| -> Result<Tensor<1>, String> {
+        let floats = |name: &str| -> Result<Vec<f32>, String> {
             let (words, _) = tensor(name, Dtype::F32, &[parameters])?.as_chunks();
             let values = words.iter().map(|&word| f32::from_le_bytes(word));
-            Ok(upload(values.collect(), device))
+            Ok(values.collect())
         };
         let mut history = Vec::new();
         if header.epochs > 0 {
@@ -267,18 +258,6 @@ fn difference(saved: &Config, asked: &Config) -> Option<String> {
     // Defaults are left out.
     let mut settings = a.as_object()?.keys().chain(b.as_object()?.keys());
     settings.find(|key| a.get(key) != b.get(key)).cloned()
-}
-
-pub(crate) fn upload(values: Vec<f32>, device: &Device) -> Tensor<1> {
-    let n = values.len();
-    Tensor::from_data(TensorData::new(values, [n]), device)
-}
-
-pub(crate) fn download(tensor: &Tensor<1>) -> Vec<f32> {
-    tensor
-        .to_data()
-        .try_into_vec()
-        .expect("parameters and losses are 32-bit floats")
 }
 
 #[cfg(test)]

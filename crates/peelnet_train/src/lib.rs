@@ -1,9 +1,9 @@
 //! Trains peelnet's networks with burn.
 //!
 //! ```text
-//! datasets ─► loader, examples ─► table, in memory or in a scratch file ─► sampler ─► windows of tensors ─► loss ─┐
-//!                                                                                                                ├─► loop
-//! Config, seed ─► Shape ─► one flat tensor of weights ─► optimizer ──────────────────────────────────────────────┘
+//! datasets ─► loader, examples ─► table, in memory or in a scratch file ─► sampler ─► windows ─► loss ─┐
+//!                                                                                                     ├─► loop
+//! Config, seed ─► Shape ─► one row of weights ─► network, optimizer ──────────────────────────────────┘
 //!                                                                        loop ─► checkpoint, model file
 //! ```
 //!
@@ -14,16 +14,11 @@
 //!
 //! These networks have a few hundred parameters, so arithmetic is cheap and everything around it is not.
 //!
-//! - *Feature-major tensors.* Inputs are `[features, rows]` and a layer is `W·X + b`. Columns of a dataset go in
-//!   without being transposed, a batch is a strided view, and every product has the long axis contiguous. On
-//!   one thread the same graph with `[rows, features]` took 1.4 times as long at 128 rows and 1.5 times at 1,024 and at
-//!   chunks of 2,048.
-//! - *One flat tensor of parameters.* Layers are views into it. Adam is a dozen operations on one tensor instead of on
-//!   six, and the gradients of two chunks are added by one operation.
+//! - *Passes of our own.* `network` runs 64 rows side by side through all layers and back, in vector instructions, without a tensor. What is
+//!   beyond the network, the loss of whole pixels, is burn's: it differentiates it by the network's answers.
 //! - *Cache-sized chunks.* A batch is cut into chunks of [`Config::chunk`] examples, spread over the threads. The
 //!   gradients are added in the order of the chunks. The cut does not depend on the number of threads, so neither does
 //!   a single bit of the result.
-//! - The loss stays on the device until the epoch ends.
 //!
 //! # Memory
 //!
@@ -37,8 +32,8 @@
 //!
 //! All randomness comes from [`Config::seed`] through [`peelnet_core::random`], whose numbers a test
 //! holds. Initial weights depend on the seed, the order of rows on the seed and the epoch. A resumed run continues from
-//! the saved weights, moments and step count and ends with the same bits as a run that was never interrupted. Between
-//! machines, results differ in the last bits, because matrix products use the instructions that a processor has.
+//! the saved weights, moments and step count and ends with the same bits as a run that was never interrupted. Sums are
+//! formed in the same order on every processor; exponentials, and what burn adds of whole pixels, differ in the last bits between machines.
 //!
 //! # The thesis's recipe
 //!

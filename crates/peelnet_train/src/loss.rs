@@ -14,23 +14,40 @@ use std::ops::Range;
 use burn::tensor::{Device, IndexingUpdateOp, Int, Tensor, TensorData};
 use peelnet_core::guards::SUM_FLOOR;
 use peelnet_model::{Output, PixelLoss};
+use rayon::prelude::*;
 
 use crate::config::Config;
-use crate::network::Network;
+use crate::network::{Columns, Network, Tile};
 use crate::normalise::Normalisation;
 use crate::table::{ALPHA, COLOR, EXACT, KNOWN, LEFT, RESIDUAL, SUM, TrainingData};
 
-/// Some examples on a device.
+/// Some examples, in the order in which they are learned.
 pub(crate) struct Window {
-    /// Columns of rows, the inputs normalised: `[columns, rows]`.
-    rows: Tensor<2>,
-    /// Columns of examples, if there are any: `[columns, examples]`.
-    fixed: Option<Tensor<2>>,
-    /// For whole pixels the pixel of each row, and the first row of each pixel, and the number of rows.
-    pixels: Option<(Tensor<1, Int>, Vec<u32>)>,
-    inputs: usize,
-    outputs: usize,
+    /// Of rows, normalised.
+    inputs: Columns,
+    of: Examples,
     pub(crate) examples: usize,
+}
+
+enum Examples {
+    Rows {
+        targets: Columns,
+        /// None, or one column.
+        weights: Option<Columns>,
+    },
+    Pixels(Box<Pixels>),
+}
+
+/// What the loss of whole pixels is made of, as burn's tensors: burn differentiates it by the network's answers.
+struct Pixels {
+    /// Exact contribution of each row, then what [`PixelColumns`](crate::PixelColumns) have for it: `[columns, rows]`.
+    rows: Tensor<2>,
+    /// `[columns, pixels]`
+    fixed: Tensor<2>,
+    /// The pixel of each row.
+    pixel: Tensor<1, Int>,
+    /// The first row of each pixel, and the number of rows.
+    first: Vec<u32>,
 }
 
 impl Window {
@@ -48,90 +65,170 @@ impl Window {
             rows.extend(data.rows_of(example));
         }
         first.push(rows.len() as u32);
-        let upload = |values: Vec<f32>, columns: usize| {
-            let shape = [columns, values.len() / columns];
-            Tensor::from_data(TensorData::new(values, shape), device)
-        };
-        let at = |column: &[f32], at: &[u32], to: &mut Vec<f32>| {
-            to.extend(at.iter().map(|&i| column[i as usize]));
-        };
-        let count = data.row_columns().count();
-        let mut values = Vec::with_capacity(count * rows.len());
-        for (k, column) in data.row_columns().enumerate() {
-            match normalisation.get(k) {
-                Some(normalisation) => normalisation.append(column, &rows, &mut values),
-                None => at(column, &rows, &mut values),
-            }
-        }
-        let row_tensor = upload(values, count);
-        let pixels = data.pixels.is_some().then(|| {
-            let pixel = first.windows(2).zip(0i32..);
-            let pixel = pixel.flat_map(|(f, i)| std::iter::repeat_n(i, (f[1] - f[0]) as usize));
-            let pixel: Vec<i32> = pixel.collect();
-            (
-                Tensor::from_data(TensorData::new(pixel, [rows.len()]), device),
-                first,
-            )
+        let count = data.inputs.len();
+        let inputs = columns(data.row_columns().take(count), &rows, |k, v| {
+            normalisation[k].apply(v)
         });
-        drop(rows);
-        let mut values = Vec::new();
-        data.example_columns()
-            .for_each(|column| at(column, order, &mut values));
-        let count = data.example_columns().count();
+        let same = |_, value| value;
+        let targets = columns(data.row_columns().skip(count), &rows, same);
+        let fixed = columns(data.example_columns(), order, same);
+        let of = match data.pixels {
+            Some(_) => {
+                let tensor = |columns: Columns| {
+                    let shape = [columns.values.len() / columns.rows.max(1), columns.rows];
+                    Tensor::from_data(TensorData::new(columns.values, shape), device)
+                };
+                let pixel = first.windows(2).zip(0i32..);
+                let pixel = pixel.flat_map(|(f, i)| std::iter::repeat_n(i, (f[1] - f[0]) as usize));
+                let pixel: Vec<i32> = pixel.collect();
+                Examples::Pixels(Box::new(Pixels {
+                    rows: tensor(targets),
+                    fixed: tensor(fixed),
+                    pixel: Tensor::from_data(TensorData::new(pixel, [rows.len()]), device),
+                    first,
+                }))
+            }
+            None => Examples::Rows {
+                targets,
+                weights: (!fixed.values.is_empty()).then_some(fixed),
+            },
+        };
         Self {
-            rows: row_tensor,
-            fixed: (count > 0).then(|| upload(values, count)),
-            pixels,
-            inputs: normalisation.len(),
-            outputs: data.targets.len(),
+            inputs,
+            of,
             examples: order.len(),
         }
     }
 
-    /// The **sum** (not the mean) of the losses of a range of examples, `[1]`. The training loop divides the sum over a
-    /// batch by the number of its examples.
-    pub(crate) fn loss_sum(
-        &self,
-        network: &Network,
-        range: Range<usize>,
-        config: &Config,
-    ) -> Tensor<1> {
-        let fixed = self.fixed.as_ref();
-        let fixed = fixed.map(|t| t.clone().narrow(1, range.start, range.len()));
-        match (&self.pixels, fixed) {
-            (Some((pixel, first)), Some(fixed)) => {
-                let (from, to) = (first[range.start] as usize, first[range.end] as usize);
-                let rows = self.rows.clone().narrow(1, from, to - from);
-                let pixel = pixel.clone().narrow(0, from, to - from) - range.start as i32;
-                self.pixel_loss(network, rows, fixed, pixel, config)
+    /// The **sum** (not the mean) of the losses of a range of examples.
+    pub(crate) fn loss(&self, network: &Network<'_>, range: Range<usize>, config: &Config) -> f64 {
+        match &self.of {
+            Examples::Rows { targets, weights } => {
+                let mut loss = 0.0;
+                network.forward(&self.inputs, range, |rows, answers| {
+                    loss += squared_errors(&mut answers.to_vec(), targets, weights.as_ref(), &rows);
+                });
+                loss
             }
-            (_, weight) => {
-                let rows = self.rows.clone().narrow(1, range.start, range.len());
-                let target = rows.clone().narrow(0, self.inputs, self.outputs);
-                let difference = network.forward(rows.narrow(0, 0, self.inputs)) - target;
-                let squared = difference.clone() * difference;
-                match weight {
-                    Some(weight) => (squared * weight).sum(),
-                    None => squared.sum(),
-                }
+            Examples::Pixels(pixels) => {
+                let answers = self.answers(network, pixels.rows_of(&range), pixels);
+                sum(pixels.loss(answers, range, config))
             }
         }
     }
 
-    fn pixel_loss(
+    /// The gradient of that sum by all parameters of the network, and the sum. The training loop divides both by the number of a batch's
+    /// examples.
+    pub(crate) fn gradient(
         &self,
-        network: &Network,
-        rows: Tensor<2>,
-        fixed: Tensor<2>,
-        pixel: Tensor<1, Int>,
+        network: &Network<'_>,
+        range: Range<usize>,
         config: &Config,
-    ) -> Tensor<1> {
+    ) -> (Vec<f32>, f64) {
+        match &self.of {
+            Examples::Rows { targets, weights } => {
+                let mut loss = 0.0;
+                let gradient = network.gradient(&self.inputs, range, |rows, answers| {
+                    loss += squared_errors(answers, targets, weights.as_ref(), &rows);
+                });
+                (gradient, loss)
+            }
+            Examples::Pixels(pixels) => {
+                let rows = pixels.rows_of(&range);
+                let answers = self.answers(network, rows.clone(), pixels);
+                let answers = answers.autodiff().require_grad();
+                let loss = pixels.loss(answers.clone(), range, config);
+                let slopes = answers.grad_remove(&mut loss.backward());
+                let slopes = slopes.map_or_else(Vec::new, numbers);
+                let gradient = network.gradient(&self.inputs, rows.clone(), |tile, answers| {
+                    let part = tile.start - rows.start..tile.end - rows.start;
+                    // A loss without a pixel has no gradient.
+                    if let Some(slopes) = slopes.get(part) {
+                        answers[0].as_flattened_mut()[..slopes.len()].copy_from_slice(slopes);
+                    }
+                });
+                (gradient, sum(loss.inner()))
+            }
+        }
+    }
+
+    /// The network's answers for some rows of pixels: `[1, rows]`.
+    fn answers(&self, network: &Network<'_>, rows: Range<usize>, of: &Pixels) -> Tensor<2> {
+        let count = rows.len();
+        let mut answers = Vec::with_capacity(count);
+        network.forward(&self.inputs, rows, |rows, tiles| {
+            answers.extend_from_slice(&tiles[0].as_flattened()[..rows.len()]);
+        });
+        Tensor::from_data(TensorData::new(answers, [1, count]), &of.rows.device())
+    }
+}
+
+/// Columns of data at some places, each value as `of` makes it with the number of its column.
+fn columns<'a>(
+    columns: impl Iterator<Item = &'a Vec<f32>>,
+    at: &[u32],
+    of: impl Fn(usize, f32) -> f32 + Sync,
+) -> Columns {
+    let columns: Vec<_> = columns.collect();
+    let mut values = vec![0.0; columns.len() * at.len()];
+    let parts = values.par_chunks_mut(at.len().max(1)).zip(columns);
+    parts.enumerate().for_each(|(k, (to, from))| {
+        let values = at.iter().map(|&i| of(k, from[i as usize]));
+        to.iter_mut()
+            .zip(values)
+            .for_each(|(to, value)| *to = value);
+    });
+    Columns {
+        values,
+        rows: at.len(),
+    }
+}
+
+/// Replaces answers by the gradient of their weighted squared errors, and returns the sum of these.
+fn squared_errors(
+    answers: &mut [Tile],
+    targets: &Columns,
+    weights: Option<&Columns>,
+    rows: &Range<usize>,
+) -> f64 {
+    let weights = weights.map(|column| column.part(0, rows));
+    let mut loss = 0.0;
+    for (k, answers) in answers.iter_mut().enumerate() {
+        let answers = answers.as_flattened_mut().iter_mut();
+        for (i, (answer, target)) in answers.zip(targets.part(k, rows)).enumerate() {
+            let error = *answer - target;
+            let weight = weights.map_or(1.0, |weights| weights[i]);
+            loss += f64::from(weight * error * error);
+            *answer = 2.0 * weight * error;
+        }
+    }
+    loss
+}
+
+fn numbers<const D: usize>(tensor: Tensor<D>) -> Vec<f32> {
+    let numbers = tensor.into_data().try_into_vec();
+    numbers.expect("losses and their gradients are 32-bit floats")
+}
+
+fn sum(loss: Tensor<1>) -> f64 {
+    numbers(loss).into_iter().map(f64::from).sum()
+}
+
+impl Pixels {
+    fn rows_of(&self, range: &Range<usize>) -> Range<usize> {
+        self.first[range.start] as usize..self.first[range.end] as usize
+    }
+
+    /// The sum of the losses of a range of pixels, `[1]`, from the network's answers for their rows.
+    fn loss(&self, answer: Tensor<2>, range: Range<usize>, config: &Config) -> Tensor<1> {
+        let Range { start, end } = self.rows_of(&range);
+        let rows = self.rows.clone().narrow(1, start, end - start);
+        let fixed = self.fixed.clone().narrow(1, range.start, range.len());
+        let pixel = self.pixel.clone().narrow(0, start, end - start) - range.start as i32;
         let loss = config.loss.or(config.recipe.loss).unwrap_or_default();
-        let known = self.inputs + 1;
-        let row = |k: usize| rows.clone().narrow(0, known + k, 1);
-        let exact = || rows.clone().narrow(0, self.inputs, 1);
+        let row = |k: usize| rows.clone().narrow(0, 1 + k, 1);
+        let exact = || rows.clone().narrow(0, 0, 1);
         let column = |k: usize| fixed.clone().narrow(0, k, 1);
-        let answer = network.forward(rows.clone().narrow(0, 0, self.inputs));
         let through = match config.recipe.output {
             Output::Transmittance => answer,
             _ => (row(RESIDUAL) * answer).neg().exp(),
@@ -165,7 +262,7 @@ impl Window {
         let image = extremes.select_assign(
             1,
             pixel,
-            rows.clone().narrow(0, known + COLOR, 3) * error,
+            rows.clone().narrow(0, 1 + COLOR, 3) * error,
             IndexingUpdateOp::Add,
         );
         (column(WEIGHT) * (image.clone() * image)).sum() * (1.0 / 3.0)
@@ -298,17 +395,19 @@ mod tests {
             }
     }
 
-    /// Central differences of the loss in 64 bits, of every recipe and every loss. Their steps are too short for a ReLU to switch within
-    /// one here; the roundings of both losses, each 2⁻⁵² of it for every step of a chain of sixteen or so, are magnified by them.
-    ///
-    /// An example's gradient is a chain of products and sums of which each rounds once, forwards and backwards, through three layers of at
-    /// most 32 terms, five rows and thirty operations of the loss: 256 unit roundoffs of it at most.
-    #[test]
-    fn gradients_of_every_recipes_losses_are_difference_quotients() {
-        const STEP: f64 = 1e-6;
-        let device = Device::flex();
-        for recipe in Recipe::ALL {
-            let losses: &[Option<PixelLoss>] = match recipe.loss {
+    /// A loss, and examples and parameters to differentiate it at.
+    struct Case {
+        at: String,
+        config: Config,
+        data: TrainingData,
+        shape: Shape,
+        parameters: Vec<f32>,
+    }
+
+    /// Every recipe with every loss that it can minimise.
+    fn cases() -> impl Iterator<Item = Case> {
+        let losses = |recipe: Recipe| -> &[Option<PixelLoss>] {
+            match recipe.loss {
                 None => &[None],
                 Some(_) => &[
                     Some(PixelLoss::Image),
@@ -316,61 +415,140 @@ mod tests {
                     Some(PixelLoss::WeightedTransmittance),
                     Some(PixelLoss::Transmittance),
                 ],
-            };
-            for &pixel_loss in losses {
-                let config = Config {
-                    loss: pixel_loss,
-                    ..Config::for_recipe(recipe)
-                };
-                let at = format!("{recipe}, {pixel_loss:?}");
-                let data = examples(recipe);
-                let shape = Shape::new(&config);
-                let parameters = shape.initial(3);
-                let count = parameters.len();
-                let flat = TensorData::new(parameters.clone(), [count]);
-                let network = Network::tracked(&shape, &Tensor::from_data(flat, &device));
-                let same = Normalisation {
-                    offset: 0.0,
-                    scale: 1.0,
-                    min: -1.0,
-                    max: 1.0,
-                    constant: false,
-                };
-                let normalisation = vec![same; data.inputs.len()];
-                let order: Vec<u32> = (0..EXAMPLES as u32).collect();
-                let window = Window::new(&data, &order, &normalisation, &device);
-                let sum = window.loss_sum(&network, 0..EXAMPLES, &config);
-                let found: Vec<f32> = network.gradient(sum).into_data().try_into_vec().unwrap();
-                let parameters: Vec<f64> = parameters.into_iter().map(f64::from).collect();
-                let all = |parameters: &[f64]| -> Vec<f64> {
-                    let each = 0..EXAMPLES;
-                    each.map(|e| loss(&config, &shape, &data, parameters, e))
-                        .collect()
-                };
-                let noise = 16.0 * f64::EPSILON / STEP;
-                let limit = 256.0 * UNIT_ROUNDOFF;
-                let total: f64 = all(&parameters).iter().sum();
-                let error = (f64::from(found[count]) / total - 1.0).abs();
-                assert!(error <= limit, "{at}: {} for {total}", found[count]);
-                for i in 0..count {
-                    let moved = |by: f64| {
-                        let mut moved = parameters.clone();
-                        moved[i] += by;
-                        all(&moved)
-                    };
-                    let pairs = moved(STEP).into_iter().zip(moved(-STEP));
-                    let terms: Vec<f64> = pairs.map(|(a, b)| (a - b) / (2.0 * STEP)).collect();
-                    let expected: f64 = terms.iter().sum();
-                    let scale: f64 = terms.iter().map(|t| t.abs()).sum();
-                    let error = (f64::from(found[i]) - expected).abs();
-                    let allowed = limit * scale + noise * total;
-                    assert!(
-                        error <= allowed,
-                        "{at}: parameter {i}, {} for {expected}",
-                        found[i]
-                    );
-                }
             }
+        };
+        let all = Recipe::ALL
+            .into_iter()
+            .flat_map(move |r| losses(r).iter().map(move |l| (r, *l)));
+        all.map(|(recipe, loss)| {
+            let config = Config {
+                loss,
+                ..Config::for_recipe(recipe)
+            };
+            let shape = Shape::new(&config);
+            Case {
+                at: format!("{recipe}, {loss:?}"),
+                data: examples(recipe),
+                parameters: shape.initial(3),
+                shape,
+                config,
+            }
+        })
+    }
+
+    impl Case {
+        /// Holds the gradient against those of each example, `[examples][parameters]`, which have an error of `noise`.
+        ///
+        /// An example's gradient is a chain of products and sums of which each rounds once, forwards and backwards, through three layers of
+        /// at most 32 terms, five rows and thirty operations of the loss: 256 unit roundoffs of it at most.
+        fn check(&self, expected: &[Vec<f64>], loss: f64, noise: f64) {
+            let Self { at, config, .. } = self;
+            let device = Device::flex();
+            let same = Normalisation {
+                offset: 0.0,
+                scale: 1.0,
+                min: -1.0,
+                max: 1.0,
+                constant: false,
+            };
+            let normalisation = vec![same; self.data.inputs.len()];
+            let order: Vec<u32> = (0..EXAMPLES as u32).collect();
+            let window = Window::new(&self.data, &order, &normalisation, &device);
+            let network = Network {
+                shape: &self.shape,
+                parameters: &self.parameters,
+            };
+            let limit = 256.0 * UNIT_ROUNDOFF;
+            let (found, sum) = window.gradient(&network, 0..EXAMPLES, config);
+            for sum in [sum, window.loss(&network, 0..EXAMPLES, config)] {
+                let error = (sum / loss - 1.0).abs();
+                assert!(error <= limit, "{at}: {sum} for {loss}");
+            }
+            for (i, found) in found.into_iter().enumerate() {
+                let terms = || expected.iter().map(|of_example| of_example[i]);
+                let expected: f64 = terms().sum();
+                let error = (f64::from(found) - expected).abs();
+                let allowed = limit * terms().map(f64::abs).sum::<f64>() + noise;
+                assert!(
+                    error <= allowed,
+                    "{at}: parameter {i}, {found} for {expected}"
+                );
+            }
+        }
+    }
+
+    /// Central differences of the loss in 64 bits. Their steps are too short for a ReLU to switch within one here; the roundings of both
+    /// losses, each 2⁻⁵² of it for every step of a chain of sixteen or so, are magnified by them.
+    #[test]
+    fn gradients_of_every_recipes_losses_are_difference_quotients() {
+        const STEP: f64 = 1e-6;
+        for case in cases() {
+            let parameters: Vec<f64> = case.parameters.iter().copied().map(f64::from).collect();
+            let of =
+                |parameters: &[f64], e| loss(&case.config, &case.shape, &case.data, parameters, e);
+            let quotient = |example, i: usize| {
+                let moved = |by: f64| {
+                    let mut moved = parameters.clone();
+                    moved[i] += by;
+                    of(&moved, example)
+                };
+                (moved(STEP) - moved(-STEP)) / (2.0 * STEP)
+            };
+            let gradient = |e| (0..parameters.len()).map(|i| quotient(e, i)).collect();
+            let gradients: Vec<_> = (0..EXAMPLES).map(gradient).collect();
+            let loss: f64 = (0..EXAMPLES).map(|e| of(&parameters, e)).sum();
+            case.check(&gradients, loss, 16.0 * f64::EPSILON / STEP * loss);
+        }
+    }
+
+    /// PyTorch's differentiation in 64 bits of the losses as `benches/peers/pytorch_gradients.py` writes them, by the Python that
+    /// `PEELNET_PYTORCH` names: `cargo xtask peers` installs one and runs this.
+    ///
+    /// Where the terms of a component cancel, they are of the size of the example's largest component, and a chain of sixteen or so rounds.
+    #[test]
+    #[ignore = "needs PyTorch, which cargo xtask peers installs"]
+    fn gradients_are_pytorchs() {
+        use std::process::{Command, Stdio};
+        let python = std::env::var_os("PEELNET_PYTORCH").expect("PEELNET_PYTORCH names a Python");
+        let script = "../../benches/peers/pytorch_gradients.py";
+        let asked = cases().map(|case| {
+            let pixels = case.data.pixels.as_ref();
+            serde_json::json!({
+                "widths": case.shape.widths,
+                "hidden": case.shape.hidden,
+                "output": case.shape.output,
+                "parameters": case.parameters,
+                "inputs": case.data.inputs,
+                "targets": case.data.targets,
+                "weights": case.data.weights,
+                "answers_transmittance": case.config.recipe.output == Output::Transmittance,
+                "loss": case.config.loss,
+                "floor": SUM_FLOOR,
+                "rows_of_a_pixel": ROWS_OF_A_PIXEL,
+                "rows": pixels.map(|p| &p.rows),
+                "fixed": pixels.map(|p| &p.fixed),
+            })
+        });
+        let asked: Vec<_> = asked.collect();
+        let mut child = Command::new(python)
+            .arg(script)
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .spawn()
+            .unwrap();
+        serde_json::to_writer(child.stdin.take().unwrap(), &asked).unwrap();
+        let answer = child.wait_with_output().unwrap();
+        assert!(answer.status.success());
+        /// The loss and the gradient of each example.
+        type Answer = Vec<(f64, Vec<f64>)>;
+        let answers: Vec<Answer> = serde_json::from_slice(&answer.stdout).unwrap();
+        assert_eq!(answers.len(), asked.len());
+        for (case, examples) in cases().zip(answers) {
+            let (losses, gradients): (Vec<_>, Vec<_>) = examples.into_iter().unzip();
+            assert_eq!(gradients.len(), EXAMPLES);
+            let largest = |g: &Vec<f64>| g.iter().fold(0.0f64, |most, g| most.max(g.abs()));
+            let size: f64 = gradients.iter().map(largest).sum();
+            case.check(&gradients, losses.iter().sum(), 16.0 * UNIT_ROUNDOFF * size);
         }
     }
 }

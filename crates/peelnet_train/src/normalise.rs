@@ -89,14 +89,12 @@ impl Normalisation {
         }
     }
 
-    /// Appends the values at `rows`, normalised exactly as evaluation does it; zero for a constant column.
-    pub(crate) fn append(self, values: &[f32], rows: &[u32], to: &mut Vec<f32>) {
-        let normalised = |&row: &u32| (values[row as usize] - self.offset) * self.scale;
+    /// A raw value, normalised exactly as evaluation does it; zero for a constant column.
+    pub(crate) fn apply(self, value: f32) -> f32 {
         if self.constant {
-            to.resize(to.len() + rows.len(), 0.0);
-        } else {
-            to.extend(rows.iter().map(normalised));
+            return 0.0;
         }
+        (value - self.offset) * self.scale
     }
 }
 
@@ -108,9 +106,7 @@ mod tests {
     fn normalised(values: &[f32], raw: &[f32]) -> (Normalisation, Vec<f32>) {
         let all = |values: &[f32]| (0..values.len() as u32).collect::<Vec<_>>();
         let n = Normalisation::from_moments(&Moments::over(values, &all(values)));
-        let mut to = Vec::new();
-        n.append(raw, &all(raw), &mut to);
-        (n, to)
+        (n, raw.iter().map(|&value| n.apply(value)).collect())
     }
 
     #[test]

@@ -6,13 +6,13 @@ use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use burn::tensor::{Device, Tensor};
+use burn::tensor::Device;
 use peelnet_core::files::write_whole;
 use peelnet_dataset::Subset;
 use peelnet_model::{Input, Losses, Metadata, Model};
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 
-use crate::checkpoint::{self, Progress, download, upload};
+use crate::checkpoint::{self, Progress};
 use crate::config::Config;
 use crate::error::{TrainError, io};
 use crate::lock::OutputLock;
@@ -201,7 +201,6 @@ impl Run<'_> {
                 self.config,
                 &self.fingerprint,
                 self.shape.parameters(),
-                self.feed.device,
             );
         }
         // An earlier run's model files must not pass for this run's.
@@ -214,7 +213,7 @@ impl Run<'_> {
         }
         let initial = self.shape.initial(self.config.seed);
         let progress = Progress {
-            adam: Adam::new(upload(initial, self.feed.device)),
+            adam: Adam::new(initial),
             best: None,
             history: Vec::new(),
         };
@@ -231,25 +230,20 @@ impl Run<'_> {
         let steps = examples.div_ceil(config.batch as u64) * u64::from(config.epochs);
         let begin = Instant::now();
         let mut adam = progress.adam.clone();
-        let count = self.shape.parameters();
         let mut loss = 0.0;
         self.feed.pass(Subset::Train, Some(epoch), |window| {
-            let mut losses = Vec::with_capacity(window.examples.div_ceil(config.batch));
             for first in (0..window.examples).step_by(config.batch) {
                 if self.options.stop.load(Ordering::Relaxed) {
                     return Err(TrainError::Stopped);
                 }
                 let range = first..(first + config.batch).min(window.examples);
-                let scale = 1.0 / range.len() as f64;
-                let sum = self.gradient(window, &adam.parameters, range);
-                // The loss stays on the device until the window ends.
-                losses.push(sum.clone().narrow(0, count, 1));
-                let gradient = sum.narrow(0, 0, count) * scale;
+                let count = range.len();
+                let (gradient, sum) = self.gradient(window, &adam.parameters, range);
+                loss += sum;
                 let schedule = config.schedule;
                 let rate = schedule.rate(config.learning_rate, adam.steps, steps);
-                adam = adam.step(config, rate, gradient);
+                adam.step(config, rate, &gradient, count);
             }
-            loss += total(losses);
             Ok(())
         })?;
         let seconds = begin.elapsed().as_secs_f64();
@@ -274,41 +268,56 @@ impl Run<'_> {
     }
 
     /// Mean loss of a subset; none when it is empty.
-    fn mean_loss(&self, parameters: &Tensor<1>, subset: Subset) -> Result<Option<f64>, TrainError> {
+    fn mean_loss(&self, parameters: &[f32], subset: Subset) -> Result<Option<f64>, TrainError> {
         let examples = self.feed.examples(subset);
+        let network = self.network(parameters);
         let mut sum = 0.0;
         self.feed.pass(subset, None, |window| {
-            sum += total(self.chunks(0..window.examples, |range| {
-                let network = Network::new(&self.shape, parameters);
-                window.loss_sum(&network, range, self.config)
-            }));
+            let losses = self.chunks(0..window.examples, |range| {
+                window.loss(&network, range, self.config)
+            });
+            sum += losses.iter().sum::<f64>();
             Ok(())
         })?;
         Ok((examples > 0).then(|| sum / examples as f64))
     }
 
-    /// Gradient of the summed loss of examples, then that loss: `[Shape::parameters + 1]`.
-    fn gradient(&self, window: &Window, parameters: &Tensor<1>, range: Range<usize>) -> Tensor<1> {
-        let chunks = self.chunks(range, |range| {
-            let network = Network::tracked(&self.shape, parameters);
-            let loss = window.loss_sum(&network, range, self.config);
-            network.gradient(loss)
-        });
-        let sum = chunks.into_iter().reduce(|sum, chunk| sum + chunk);
+    fn network<'a>(&'a self, parameters: &'a [f32]) -> Network<'a> {
+        Network {
+            shape: &self.shape,
+            parameters,
+        }
+    }
+
+    /// Gradient of the summed loss of examples, `[Shape::parameters]`, and that loss.
+    fn gradient(
+        &self,
+        window: &Window,
+        parameters: &[f32],
+        range: Range<usize>,
+    ) -> (Vec<f32>, f64) {
+        let network = self.network(parameters);
+        let chunks = self.chunks(range, |range| window.gradient(&network, range, self.config));
+        let sum = chunks
+            .into_iter()
+            .reduce(|(mut sum, loss), (chunk, of_chunk)| {
+                sum.iter_mut().zip(chunk).for_each(|(sum, g)| *sum += g);
+                (sum, loss + of_chunk)
+            });
         sum.expect("a batch holds at least one example")
     }
 
-    /// What `evaluate` makes of each chunk of a range, on several threads, in the order of the chunks.
-    ///
-    /// burn's CPU back end is single-threaded, and one large operation after the other streams every intermediate through
-    /// memory. A chunk's intermediates fit a core's cache. rayon's own reduction is not used, because it adds in an order that depends on
-    /// which thread was free. To be called in the pool: to enter it takes longer than a small batch.
-    fn chunks(
+    /// What `evaluate` makes of each chunk of a range, on several threads, in the order of the chunks: rayon's own reduction adds in an
+    /// order that depends on which thread was free. To be called in the pool: to enter it takes longer than a small batch.
+    fn chunks<T: Send>(
         &self,
         range: Range<usize>,
-        evaluate: impl Fn(Range<usize>) -> Tensor<1> + Sync,
-    ) -> Vec<Tensor<1>> {
+        evaluate: impl Fn(Range<usize>) -> T + Sync,
+    ) -> Vec<T> {
         let chunk = self.config.chunk;
+        if range.len() <= chunk {
+            return vec![evaluate(range)];
+        }
         (0..range.len().div_ceil(chunk))
             .into_par_iter()
             .map(|k| {
@@ -354,7 +363,7 @@ impl Run<'_> {
         Ok(())
     }
 
-    fn model(&self, epoch: u32, parameters: &Tensor<1>, history: &[EpochReport]) -> Model {
+    fn model(&self, epoch: u32, parameters: &[f32], history: &[EpochReport]) -> Model {
         let row = (epoch as usize).checked_sub(1).and_then(|i| history.get(i));
         let held_out = row.and_then(|r| r.held_out_loss);
         let chosen_by_it = self.config.patience.is_some();
@@ -369,7 +378,7 @@ impl Run<'_> {
             min: n.min,
             max: n.max,
         });
-        let mut mlp = self.shape.to_mlp(&download(parameters));
+        let mut mlp = self.shape.to_mlp(parameters);
         // See `Normalisation::from_moments`: an input that never varied must not matter.
         let first = &mut mlp.layers[0];
         for row in first.weights.chunks_exact_mut(first.inputs) {
@@ -413,16 +422,7 @@ fn not_finite(report: &EpochReport, adam: &Adam) -> Option<&'static str> {
     } else if report.held_out_loss.is_some_and(is_bad) {
         Some("the held-out loss")
     } else {
-        let mut weights = download(&adam.parameters).into_iter();
+        let mut weights = adam.parameters.iter();
         weights.any(|v| !v.is_finite()).then_some("a weight")
     }
-}
-
-/// Reads scalars back in one transfer and adds them in 64 bits.
-fn total(losses: Vec<Tensor<1>>) -> f64 {
-    if losses.is_empty() {
-        return 0.0;
-    }
-    let losses = download(&Tensor::cat(losses, 0));
-    losses.into_iter().map(f64::from).sum()
 }
