@@ -1,5 +1,6 @@
 //! Statistics of columns, for normalisation and for a first look: gathered in one pass while rows are written, merged over parts.
 
+use pulp::{Arch, Simd, WithSimd};
 use serde::{Deserialize, Serialize};
 
 use crate::column::{Column, ColumnKind, ColumnSlice};
@@ -7,7 +8,10 @@ use crate::manifest::Part;
 
 /// Sums that are formed side by side, which makes them vector instructions. Row `k` always goes to sum `k % LANES`, so the result does not
 /// depend on how rows were cut into batches.
-const LANES: usize = 4;
+const LANES: usize = 8;
+
+/// Counts of one bucket, side by side.
+const COUNTS: usize = 4;
 
 /// Values that are added at once: few enough for the fastest cache.
 const BLOCK: usize = 1 << 12;
@@ -56,18 +60,53 @@ fn edges(column: Column) -> Vec<f64> {
 const BUCKETS: usize = 512;
 
 /// The bucket of a fraction.
+#[inline(always)]
 fn bucket_of_fraction(value: f32) -> usize {
-    (value * LINEAR_BINS as f32) as usize % BUCKETS
+    (value * LINEAR_BINS as f32) as i32 as usize % BUCKETS
 }
 
 /// The bucket of another float: sign and exponent. Adding 0 makes −0 the 0 that it is.
+#[inline(always)]
 fn bucket_of_float(value: f32) -> usize {
     ((value + 0.0).to_bits() >> 23) as usize % BUCKETS
 }
 
 /// The bucket of an integer: its number of bits.
+#[inline(always)]
 fn bucket_of_integer(value: u32) -> usize {
     (u32::BITS - value.leading_zeros()) as usize % BUCKETS
+}
+
+/// The same of one up to [`SMALL`], which 32-bit floats hold exactly: from its exponent, in vector instructions.
+#[inline(always)]
+fn bucket_of_small_integer(value: u32) -> usize {
+    ((value as f32).to_bits() >> 23).saturating_sub(126) as usize % BUCKETS
+}
+const SMALL: u32 = 1 << 24;
+
+/// Values of a block that lie in no more buckets than these are compared with one bucket after the other, in bytes.
+const FEW: usize = 24;
+
+/// Bytes whose sum is one.
+const RUN: usize = 128;
+
+/// The part of a block's values in few buckets, from the first one on.
+#[inline(always)]
+fn count_few<T: Copy>(values: &[T], first: usize, counts: &mut [u64], bucket: impl Fn(T) -> usize) {
+    // What no value is in is no bucket.
+    let mut codes = [[u8::MAX; RUN]; BLOCK / RUN];
+    for (code, value) in codes.as_flattened_mut().iter_mut().zip(values) {
+        *code = (bucket(*value) - first) as u8;
+    }
+    for (code, count) in (0u8..).zip(counts) {
+        for run in &codes[..values.len().div_ceil(RUN)] {
+            let mut ones = 0u8;
+            for &of_value in run {
+                ones = ones.wrapping_add(u8::from(of_value == code));
+            }
+            *count += u64::from(ones);
+        }
+    }
 }
 
 /// The bin of a bucket; of one that no value is in, any.
@@ -94,8 +133,30 @@ pub(crate) struct Gatherer {
     max: f64,
     sums: [f64; LANES],
     squares: [f64; LANES],
-    /// Rows by bucket. Neighbours are often of one bucket: each lane has its own, so that none waits for the other's store.
-    counts: Box<[[u64; BUCKETS]; LANES]>,
+    /// Rows by bucket. Neighbours are often of one bucket: they have different counts, so that none waits for the other's store.
+    counts: Box<[[u64; BUCKETS]; COUNTS]>,
+}
+
+/// Runs with the widest registers that a processor has. All of it must become part of this function, which closures given to iterators need
+/// not.
+struct Add<'a, 'b>(&'a mut Gatherer, ColumnSlice<'b>);
+
+impl WithSimd for Add<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Self(to, values) = self;
+        match values {
+            ColumnSlice::F32(v) if to.column.is_fraction() => {
+                to.add_all(v, bucket_of_fraction, bucket_of_fraction, f32::MAX);
+            }
+            ColumnSlice::F32(v) => to.add_all(v, bucket_of_float, bucket_of_float, f32::MAX),
+            ColumnSlice::U32(v) => {
+                to.add_all(v, bucket_of_integer, bucket_of_small_integer, SMALL);
+            }
+        }
+    }
 }
 
 impl Gatherer {
@@ -108,33 +169,36 @@ impl Gatherer {
             max: f64::NEG_INFINITY,
             sums: [0.0; LANES],
             squares: [0.0; LANES],
-            counts: Box::new([[0; BUCKETS]; LANES]),
+            counts: Box::new([[0; BUCKETS]; COUNTS]),
         }
     }
 
     /// Adds values that the column allows.
     pub(crate) fn add(&mut self, values: ColumnSlice<'_>) {
-        match values {
-            ColumnSlice::F32(v) if self.column.is_fraction() => self.add_all(v, bucket_of_fraction),
-            ColumnSlice::F32(v) => self.add_all(v, bucket_of_float),
-            ColumnSlice::U32(v) => self.add_all(v, bucket_of_integer),
+        Arch::new().dispatch(Add(self, values));
+    }
+
+    #[inline(always)]
+    fn add_all<T: Copy + Default + PartialOrd + Into<f64>>(
+        &mut self,
+        values: &[T],
+        bucket: impl Fn(T) -> usize,
+        of_small: impl Fn(T) -> usize,
+        small: T,
+    ) {
+        for block in values.chunks(BLOCK) {
+            self.add_block(block, &bucket, &of_small, small);
         }
     }
 
-    fn add_all<T: Copy + PartialOrd + Into<f64>>(
+    /// In several passes, of which each becomes vector instructions as far as it can. `of_small` is the bucket of values up to `small`.
+    #[inline(always)]
+    fn add_block<T: Copy + Default + PartialOrd + Into<f64>>(
         &mut self,
         values: &[T],
         bucket: impl Fn(T) -> usize,
-    ) {
-        let blocks = values.chunks(BLOCK);
-        blocks.for_each(|block| self.add_block(block, &bucket));
-    }
-
-    /// In several passes, of which each becomes vector instructions as far as it can.
-    fn add_block<T: Copy + PartialOrd + Into<f64>>(
-        &mut self,
-        values: &[T],
-        bucket: impl Fn(T) -> usize,
+        of_small: impl Fn(T) -> usize,
+        small: T,
     ) {
         let Some(&first) = values.first() else { return };
         if self.rows == 0 {
@@ -151,6 +215,7 @@ impl Gatherer {
             self.counts[0][bucket(first)] += values.len() as u64;
             return;
         }
+        let all = values;
         let (head, values) = values.split_at(((LANES - start) % LANES).min(values.len()));
         let (chunks, tail) = values.as_chunks::<LANES>();
         self.add_one_by_one(head, start);
@@ -164,8 +229,16 @@ impl Gatherer {
         (self.sums, self.squares) = (sums, squares);
         self.add_one_by_one(tail, 0);
         let counts = &mut *self.counts;
+        let (first, last) = (bucket(min), bucket(max));
+        // Buckets ascend with values, but for negative floats.
+        if min >= T::default() && max <= small && last - first < FEW {
+            count_few(all, first, &mut counts[0][first..=last], of_small);
+            return;
+        }
         for chunk in chunks {
-            (0..LANES).for_each(|lane| counts[lane][bucket(chunk[lane])] += 1);
+            for (lane, value) in chunk.iter().enumerate() {
+                counts[lane % COUNTS][bucket(*value)] += 1;
+            }
         }
         for value in head.iter().chain(tail) {
             counts[0][bucket(*value)] += 1;
@@ -173,6 +246,7 @@ impl Gatherer {
     }
 
     /// Adds fewer values than lanes to the sums, from a lane on.
+    #[inline(always)]
     fn add_one_by_one<T: Copy + Into<f64>>(&mut self, values: &[T], lane: usize) {
         for (k, &value) in values.iter().enumerate() {
             let difference = value.into() - self.origin;
@@ -210,16 +284,19 @@ impl Gatherer {
 }
 
 /// The least and the greatest of some values, and of `first`.
+#[inline(always)]
 fn range<T: Copy + PartialOrd>(values: &[T], first: T) -> (T, T) {
-    const WIDTH: usize = 8;
-    let less = |a: T, b: T| if b < a { b } else { a };
-    let more = |a: T, b: T| if b > a { b } else { a };
+    const WIDTH: usize = 32;
     let (mut min, mut max) = ([first; WIDTH], [first; WIDTH]);
     let (chunks, rest) = values.as_chunks::<WIDTH>();
     for chunk in chunks {
-        min = std::array::from_fn(|k| less(min[k], chunk[k]));
-        max = std::array::from_fn(|k| more(max[k], chunk[k]));
+        for k in 0..WIDTH {
+            min[k] = if chunk[k] < min[k] { chunk[k] } else { min[k] };
+            max[k] = if chunk[k] > max[k] { chunk[k] } else { max[k] };
+        }
     }
+    let less = |a: T, b: T| if b < a { b } else { a };
+    let more = |a: T, b: T| if b > a { b } else { a };
     let min = min.iter().chain(rest).fold(first, |a, b| less(a, *b));
     let max = max.iter().chain(rest).fold(first, |a, b| more(a, *b));
     (min, max)
