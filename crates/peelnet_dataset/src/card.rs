@@ -1,7 +1,7 @@
-//! The card of a sealed dataset: `README.md`, with the front matter that the Hugging Face hub and its `datasets` read, and `croissant.json`
-//! (Croissant 1.1), for other programs.
+//! The card of a sealed dataset: `README.md`, with the front matter that the Hugging Face hub and its `datasets` read, `croissant.json`
+//! (Croissant 1.1), for other programs, and a picture of each scene.
 //!
-//! Both follow from plan and manifest, so that every writer has the same bytes. Text from outside (names, paths, the command line) is
+//! All follow from plan and manifest, so that every writer has the same bytes. Text from outside (names, paths, the command line) is
 //! escaped: in Markdown all punctuation of it, in JSON by the serializer. The front matter has none but names of files.
 
 use peelnet_core::files::{counted, one_line, printable, printable_json, thousands};
@@ -14,30 +14,52 @@ use crate::manifest::{FileEntry, Manifest, Part, to_json};
 use crate::plan::Plan;
 use crate::store::FRAGMENTS;
 
-/// The files of a card.
-pub(crate) const NAMES: [&str; 2] = ["README.md", "croissant.json"];
+/// A name and what is in it.
+pub(crate) type File = (String, Vec<u8>);
+
+const NAMES: [&str; 2] = ["README.md", "croissant.json"];
+
+/// Whether a card may have a file of this name.
+pub(crate) fn is_name(name: &str) -> bool {
+    let scene = name
+        .strip_prefix("picture-")
+        .and_then(|n| n.strip_suffix(".png"));
+    let scene = scene.and_then(|digits| digits.parse().ok());
+    NAMES.contains(&name) || scene.is_some_and(|scene| picture(scene) == name)
+}
+
+/// The name of a scene's picture.
+fn picture(scene: u32) -> String {
+    format!("picture-{scene:05}.png")
+}
 
 const PROJECT: &str = env!("CARGO_PKG_REPOSITORY");
 
 /// The names of Croissant 1.1 and of PROV.
 const CONTEXT: &str = include_str!("card/context.json");
 
-/// Names and texts of a whole dataset's card.
-pub(crate) fn files(plan: &Plan, manifest: &Manifest) -> [(&'static str, String); NAMES.len()] {
+/// The files of a whole dataset's card, with the pictures that scenes have by their numbers.
+pub(crate) fn files(plan: &Plan, manifest: &Manifest, pictures: Vec<(u32, Vec<u8>)>) -> Vec<File> {
+    let drawn: Vec<u32> = pictures.iter().map(|(scene, _)| *scene).collect();
     let croissant = to_json(&croissant(plan, manifest));
-    let [for_people, for_programs] = NAMES;
-    [
-        (for_people, readme(plan, manifest)),
-        (for_programs, printable_json(&croissant).into_owned()),
-    ]
+    let texts = [
+        readme(plan, manifest, &drawn),
+        printable_json(&croissant).into_owned(),
+    ];
+    let texts = NAMES.map(str::to_owned).into_iter().zip(texts);
+    let texts = texts.map(|(name, text)| (name, text.into_bytes()));
+    let pictures = pictures
+        .into_iter()
+        .map(|(scene, png)| (picture(scene), png));
+    texts.chain(pictures).collect()
 }
 
 /// What a manifest says of these files.
-pub(crate) fn entries(files: &[(&str, String)]) -> Vec<FileEntry> {
-    let entry = |(name, text): &(&str, String)| FileEntry {
-        name: (*name).to_owned(),
-        bytes: text.len() as u64,
-        sha256: sha256(text.as_bytes()),
+pub(crate) fn entries(files: &[File]) -> Vec<FileEntry> {
+    let entry = |(name, bytes): &File| FileEntry {
+        name: name.clone(),
+        bytes: bytes.len() as u64,
+        sha256: sha256(bytes),
     };
     files.iter().map(entry).collect()
 }
@@ -108,7 +130,7 @@ fn dtype(column: Column) -> &'static str {
     }
 }
 
-fn readme(plan: &Plan, m: &Manifest) -> String {
+fn readme(plan: &Plan, m: &Manifest, drawn: &[u32]) -> String {
     let front_matter = if is_table(m.format) {
         front_matter(m)
     } else {
@@ -137,8 +159,8 @@ fn readme(plan: &Plan, m: &Manifest) -> String {
          \n\
          ## Scenes\n\
          \n\
-         | scene | parts | rows | held out | effects | file |\n\
-         |---|---:|---:|---|---|---|\n",
+         | scene | picture | parts | rows | held out | effects | file |\n\
+         |---|---|---:|---:|---|---|---|\n",
         counted(m.rows, "row"),
         counted(m.pixels, "pixel"),
         counted(m.parts.len() as u64, "part"),
@@ -150,8 +172,13 @@ fn readme(plan: &Plan, m: &Manifest) -> String {
             .iter()
             .filter(|part| part.scene as usize == k)
             .count();
+        let shown = match drawn.contains(&(k as u32)) {
+            true => format!("![]({})", picture(k as u32)),
+            false => String::new(),
+        };
         let row = [
             plain(&printable(&scene.name)),
+            shown,
             thousands(parts as u64),
             thousands(rows.get(&*scene.name).copied().unwrap_or(0)),
             if scene.held_out { "yes" } else { "no" }.to_owned(),
@@ -160,7 +187,8 @@ fn readme(plan: &Plan, m: &Manifest) -> String {
         ];
         text += &format!("| {} |\n", row.join(" | "));
     }
-    text += "\nA part is one view of one scene, or of a varied copy of it, and `view` is its number. Scenes that are held out must not be trained on.\n\
+    text += "\nPictures are of the rows of a scene's first view: its transparent surfaces, before nothing.\n\
+         A part is one view of one scene, or of a varied copy of it, and `view` is its number. Scenes that are held out must not be trained on.\n\
          `peelnet render FILE --view K --out picture.png` draws a scene; cameras are in `_peelnet/manifest.json`.\n\
          \n\
          ## Columns\n\

@@ -13,6 +13,7 @@
 //!   _peelnet/parts/00001.json
 //!   README.md                                 the card: what this is, for people and for the Hugging Face hub
 //!   croissant.json                            the same for programs (Croissant 1.1): files with hashes, columns, provenance
+//!   picture-00000.png                         a picture of each scene for the card
 //!   _peelnet/manifest.json                    the seal: scenes, cameras, counts, statistics by column, sha256 of every file
 //! ```
 //!
@@ -53,6 +54,7 @@ mod formats;
 mod hash;
 mod manifest;
 mod parts;
+mod picture;
 mod plan;
 mod reader;
 pub mod split;

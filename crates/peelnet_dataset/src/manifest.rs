@@ -70,7 +70,7 @@ pub struct Manifest {
     /// Hash over (part index, sha256 of each file): the same for the same rows in the same format, however they
     /// were sharded.
     pub hash: String,
-    /// The files that describe the dataset to others, as it was sealed: `README.md` and `croissant.json`. They may be edited or removed, which
+    /// The files that describe the dataset to others, as it was sealed: `README.md`, `croissant.json` and pictures of scenes. They may be edited or removed, which
     /// changes nothing about the rows. Empty in manifests of earlier versions.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub card: Vec<FileEntry>,
@@ -159,6 +159,9 @@ pub struct Part {
     /// Statistics of the part's rows, in its record; the manifest has those of all parts together.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub statistics: Vec<ColumnStatistics>,
+    /// A picture of the scene for the dataset's card, in the record of its first part: PNG in base64.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub picture: Option<String>,
 }
 
 /// A file of a part, or of the card.
@@ -231,7 +234,7 @@ impl Manifest {
         }
         // What is listed may be removed with the dataset.
         let mut card = self.card.iter();
-        match card.find(|file| !card::NAMES.contains(&file.name.as_str())) {
+        match card.find(|file| !card::is_name(&file.name)) {
             Some(file) => Err(format!("{:?} is no file of a card", file.name)),
             None => Ok(()),
         }

@@ -8,7 +8,6 @@ use peelnet_core::files::printable;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::card;
 use crate::error::DatasetError;
 use crate::folder;
 use crate::hash::sha256;
@@ -192,14 +191,14 @@ pub(crate) fn whole(
     let Some(parts) = parts.into_iter().collect::<Option<Vec<Part>>>() else {
         return Ok(None);
     };
-    let manifest = plan.manifest(parts);
+    let (manifest, card) = plan.manifest_and_card(parts);
     check(&manifest)?;
     if let Err(reason) = manifest.check() {
         return wrong(PARTS, &reason);
     }
     // Before the seal: a sealed dataset has its card. What is there is another writer's of the same bytes, or the user's, and stays.
-    for (name, text) in card::files(plan, &manifest) {
-        store.put_if_absent(name, text.as_bytes())?;
+    for (name, bytes) in card {
+        store.put_if_absent(&name, &bytes)?;
     }
     // Another writer may come to its end at the same time.
     if !store.put_if_absent(MANIFEST, to_json(&manifest).as_bytes())?
@@ -281,6 +280,7 @@ pub(crate) fn is_as_recorded(store: &dyn Store, part: &Part) -> Result<bool, Dat
         Part {
             files,
             statistics,
+            picture: None,
             ..record.part
         } == *part
     }))

@@ -18,6 +18,7 @@ use crate::manifest::{
     EXTRACT_AGAIN, MAX_WORK_ITEMS, Manifest, Part, SCHEMA_VERSION, SceneEntry, columns,
     hash_of_parts, read_json, to_json,
 };
+use crate::picture;
 use crate::statistics;
 use crate::store::{PLAN, Store};
 
@@ -200,8 +201,14 @@ impl Plan {
         Ok((there, false))
     }
 
-    pub(crate) fn manifest(&self, mut parts: Vec<Part>) -> Manifest {
+    pub(crate) fn manifest(&self, parts: Vec<Part>) -> Manifest {
+        self.manifest_and_card(parts).0
+    }
+
+    /// The manifest, and the files of its card: none of a dataset that is not whole.
+    pub(crate) fn manifest_and_card(&self, mut parts: Vec<Part>) -> (Manifest, Vec<card::File>) {
         parts.sort_by_key(|p| p.index);
+        let pictures = picture::take(&mut parts);
         let statistics = statistics::take_merged(&mut parts);
         // Records come from outside, with any numbers in them.
         let sum = |count: fn(&Part) -> u64| parts.iter().map(count).fold(0, u64::saturating_add);
@@ -231,10 +238,12 @@ impl Plan {
             parts,
         };
         // Of records that nobody has checked yet, a card could be of anything.
+        let mut files = Vec::new();
         if manifest.is_whole() && manifest.check().is_ok() {
-            manifest.card = card::entries(&card::files(self, &manifest));
+            files = card::files(self, &manifest, pictures);
+            manifest.card = card::entries(&files);
         }
-        manifest
+        (manifest, files)
     }
 }
 

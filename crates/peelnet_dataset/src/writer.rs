@@ -14,6 +14,7 @@ use crate::formats::PartSink;
 use crate::hash::hash_file;
 use crate::manifest::{FileEntry, Manifest, Part, to_json};
 use crate::parts::{self, PartRecord};
+use crate::picture::Picture;
 use crate::plan::{Header, Plan};
 use crate::statistics::Gatherer;
 use crate::store::{FRAGMENTS, Folder, PLAN, Store, store_at};
@@ -114,6 +115,7 @@ impl DatasetWriter {
             return Err(DatasetError::invalid(self.store.path(), reason));
         };
         let stem = part.stem(&scene.name);
+        let picture = Picture::of(&part, header.pixels_fraction);
         let names = header.format.file_names(&stem);
         let files = names.iter().map(|name| self.scratch.path.join(name));
         // A second part of the same work item fails here, because its files exist.
@@ -125,6 +127,7 @@ impl DatasetWriter {
             names,
             sink,
             statistics: Column::ALL.map(Gatherer::new).into(),
+            picture,
             last_pixel: None,
         })
     }
@@ -262,6 +265,7 @@ pub struct PartWriter<'a> {
     sink: Box<dyn PartSink>,
     /// Of each column, gathered while rows pass.
     statistics: Vec<Gatherer>,
+    picture: Option<Picture>,
     last_pixel: Option<[u32; 2]>,
 }
 
@@ -288,6 +292,7 @@ impl PartWriter<'_> {
             self.last_pixel = pixel;
         }
         part.rows += rows.len() as u64;
+        self.picture.iter_mut().for_each(|p| p.add(rows));
         self.sink.write(rows)
     }
 
@@ -319,6 +324,7 @@ impl PartWriter<'_> {
                 .iter()
                 .filter_map(Gatherer::finish)
                 .collect(),
+            picture: self.picture.as_ref().and_then(Picture::encode),
             ..self.part
         };
         if !dataset.replaces {

@@ -111,10 +111,13 @@ fn a_card_says_what_the_manifest_says() {
         let folder = temporary();
         let folder = folder.path();
         let m = write(folder, format).unwrap();
-        for (file, name) in m.card.iter().zip(CARD) {
-            let text = read(folder, name);
-            assert_eq!((&*file.name, file.bytes), (name, text.len() as u64));
-            assert_eq!(file.sha256, sha256(text.as_bytes()));
+        let names: Vec<&str> = m.card.iter().map(|file| &*file.name).collect();
+        let pictures = ["picture-00000.png", "picture-00001.png"];
+        assert_eq!(names, [&CARD[..], &pictures].concat());
+        for file in &m.card {
+            let bytes = fs::read(folder.join(&file.name)).unwrap();
+            assert_eq!(file.bytes, bytes.len() as u64);
+            assert_eq!(file.sha256, sha256(&bytes));
         }
         let text = read(folder, "README.md");
         assert!(text.starts_with("---\n"));
@@ -123,8 +126,9 @@ fn a_card_says_what_the_manifest_says() {
         let mut words = vec![
             "license: unknown\n".to_owned(),
             format!("| `{}` | float32 | scene units |", Column::LinearDepth),
-            "| cups | 2 |".to_owned(),
-            "| smoke in a box | 2 | ".to_owned() + &peelnet_core::files::thousands(held_out),
+            "| cups | ![](picture-00000.png) | 2 |".to_owned(),
+            "| smoke in a box | ![](picture-00001.png) | 2 | ".to_owned()
+                + &peelnet_core::files::thousands(held_out),
             "    peelnet extract\n".to_owned(),
             "| adapter class | software |".to_owned(),
             "| size | 640x480 |".to_owned(),
@@ -162,6 +166,48 @@ fn a_card_says_what_the_manifest_says() {
     let text = read(folder.path(), "README.md");
     assert!(text.contains("  - split: train\n    path: fragments-*.csv\n"));
     assert!(!text.contains("held_out"));
+}
+
+/// Four pixels of 640 by 480 are one of the picture: the mean of what is seen of them, un-premultiplied. A record with another picture is
+/// sealed without one.
+#[test]
+fn a_picture_shows_the_first_view() {
+    let folder = temporary();
+    let folder = folder.path();
+    let mut rows = FragmentBatch::default();
+    let fragment = |r, g, alpha| PeeledFragment {
+        depth: 1.0,
+        color: [r, g, 0.0, alpha],
+    };
+    // Half red before opaque green, and beside it a quarter of red.
+    let clip = [0.1, 100.0];
+    let both = [fragment(1.0, 0.0, 0.5), fragment(0.0, 1.0, 1.0)];
+    rows.push_pixel([0, 4, 0], clip, both.into_iter());
+    rows.push_pixel([0, 9, 1], clip, [fragment(1.0, 0.0, 0.25)].into_iter());
+    let m = write_one(folder, Format::Csv, &rows, 1);
+    let file = fs::File::open(folder.join("picture-00000.png")).unwrap();
+    let mut reader = png::Decoder::new(std::io::BufReader::new(file))
+        .read_info()
+        .unwrap();
+    let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
+    let info = reader.next_frame(&mut bytes).unwrap();
+    assert_eq!((info.width, info.height), (160, 120));
+    let pixels: Vec<_> = bytes.as_chunks::<4>().0.iter().collect();
+    // sRGB of ½ is 188; a sixteenth of 255 is 15.9.
+    assert_eq!(pixels[1], &[188, 188, 0, 16]);
+    assert_eq!(pixels[2], &[255, 0, 0, 4]);
+    assert!(pixels[3..].iter().all(|pixel| pixel[3] == 0));
+    assert!(m.parts[0].picture.is_none());
+    let name = "_peelnet/parts/00000.json";
+    let mut record = json(folder, name);
+    record["part"]["picture"] = "PHNjcmlwdD4=".into();
+    fs::write(folder.join(name), record.to_string()).unwrap();
+    for name in [MANIFEST, "picture-00000.png"] {
+        fs::remove_file(folder.join(name)).unwrap();
+    }
+    let card = seal(folder).unwrap().card;
+    assert_eq!(card.len(), CARD.len());
+    assert!(!folder.join("picture-00000.png").exists());
 }
 
 /// Names, paths, settings and the command line are data: neither Markdown, nor front matter, nor HTML.
