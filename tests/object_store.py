@@ -214,7 +214,7 @@ class Tests:
         proxy.end()
         rows = [f"fragments-{k:05}-synthetic-v{k}.parquet" for k in range(PARTS)]
         meta = ["manifest.json", "plan.json"] + [f"parts/{k:05}.json" for k in range(PARTS)]
-        card = ["README.md", "croissant.json"]
+        card = ["README.md", "croissant.json", "picture-00000.png"]
         assert self.names("plain") == sorted(rows + card + ["_peelnet/" + m for m in meta]), self.names("plain")
         for command in ("inspect", "seal"):
             answer = self.run(self.server.port, f"{command} s3://rows/plain").json()
