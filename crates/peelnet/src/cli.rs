@@ -393,7 +393,10 @@ pub struct ViewArgs {
     /// The picture alone, without panels
     #[arg(long)]
     pub bare: bool,
-    /// Train this network on the scene, as the button does; a script without --frames ends once it is trained
+    /// Look into this dataset beside the picture; --train trains on it
+    #[arg(long, value_name = "DATASET")]
+    pub dataset: Option<PathBuf>,
+    /// Train this network on the scene, or on the dataset, as the button does; a script without --frames ends once it is trained
     #[arg(long, value_name = "RECIPE")]
     pub train: Option<Recipe>,
     /// For scripts: draw N frames and end

@@ -52,7 +52,9 @@ pub struct Start {
     pub against: Option<MethodSpec>,
     /// Whether the picture alone is shown, without panels.
     pub bare: bool,
-    /// Trains this on the scene at once; not in a page.
+    /// A dataset to look into, and to train on; not in a page.
+    pub dataset: Option<PathBuf>,
+    /// Trains this at once, on the dataset or else on the scene; not in a page.
     pub train: Option<Recipe>,
     pub script: Option<Script>,
 }
@@ -71,6 +73,7 @@ impl Start {
             compare: Mode::One,
             against: None,
             bare: false,
+            dataset: None,
             train: None,
             script: None,
         }
@@ -104,6 +107,8 @@ pub(crate) struct App {
     pub front: Front,
     pub output: Output,
     pub training: Training,
+    #[cfg(not(target_arch = "wasm32"))]
+    pub dataset: Option<crate::dataset::Looked>,
     /// Begins with the next frame.
     train: Option<Recipe>,
     pub messages: Messages,
@@ -152,6 +157,8 @@ impl App {
             front: Front::default(),
             output: Output::default(),
             training: Training::default(),
+            #[cfg(not(target_arch = "wasm32"))]
+            dataset: None,
             train: start.train,
             messages: Messages::default(),
             watch: Watch::default(),
@@ -178,6 +185,10 @@ impl App {
                 camera.target = Vec3::from_slice(&numbers[3..]);
                 camera.fov_y_degrees = *numbers.get(6).unwrap_or(&camera.fov_y_degrees);
             });
+        }
+        #[cfg(not(target_arch = "wasm32"))]
+        if let Some(path) = start.dataset {
+            app.open_dataset(&path);
         }
         if let Some(path) = start.model {
             app.open_network(Source::named(path));
@@ -311,6 +322,8 @@ impl App {
             self.begin_training(ui, Some(recipe));
         }
         self.poll_training(ui);
+        #[cfg(not(target_arch = "wasm32"))]
+        self.poll_dataset(ui);
     }
 
     /// Draws what is shown in a picture of this size, where anything changed; the texture that egui shows.
@@ -421,6 +434,8 @@ impl App {
         let now = begin.elapsed().as_secs_f64() * 1e3;
         self.cpu_ms += 0.1 * (now - self.cpu_ms);
         let waits = self.awaits_training();
+        #[cfg(not(target_arch = "wasm32"))]
+        let waits = waits || self.awaits_dataset();
         if let Some(script) = &mut self.script {
             script.advance(&ctx, &self.first, &self.training, waits, now);
         }

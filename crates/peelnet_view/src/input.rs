@@ -83,8 +83,10 @@ impl App {
     pub fn take_dropped(&mut self, ui: &Context) {
         let files = ui.input(|i| i.raw.dropped_files.clone());
         let paths: Vec<PathBuf> = files.iter().map(|f| f.path().to_owned()).collect();
-        if !paths.is_empty() {
-            self.open_files(&paths, None);
+        match paths.first().filter(|path| path.is_dir()) {
+            Some(folder) => self.open_dataset(folder),
+            None if paths.is_empty() => {}
+            None => self.open_files(&paths, None),
         }
     }
 

@@ -17,6 +17,8 @@
 mod address;
 mod app;
 mod compare;
+#[cfg(not(target_arch = "wasm32"))]
+mod dataset;
 mod display;
 mod eye;
 mod front;

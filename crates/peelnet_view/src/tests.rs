@@ -9,8 +9,10 @@ use crate::{
 };
 use eframe::egui_wgpu::{RenderState, RendererOptions};
 use egui_kittest::{Harness, kittest::Queryable as _};
-use peelnet_bench::metrics;
+use peelnet_bench::{metrics, report::dataset::Pixel};
+use peelnet_core::files::thousands;
 use peelnet_model::{Model, Recipe};
+use peelnet_peel::{ExtractOptions, extract};
 use peelnet_render::gpu::{AdapterRequest, Gpu};
 use peelnet_render::{FrameStatus, MethodOptions, MethodSpec, Renderer};
 use peelnet_scene::{Scene, suite};
@@ -511,6 +513,73 @@ fn another_scene_ends_a_training() {
     steps(&mut w);
     assert_eq!(trained(&w), last);
     assert_eq!(w.state().messages.0, []);
+}
+
+/// A dataset has its views, a pixel's rows and histograms beside the picture; a network is trained on it.
+#[test]
+fn a_dataset_is_looked_into_and_trained_on() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut w = sized("boxes", "wboit-eq9", [900.0, 1800.0]);
+    let options = ExtractOptions {
+        size: [96, 64],
+        ..ExtractOptions::new(folder.path().join("rows"))
+    };
+    let scenes = [stage(&w).scene.clone()];
+    let m = extract(
+        &stage(&w).gpu,
+        &scenes,
+        &options,
+        &false.into(),
+        &mut |_| (),
+    );
+    let m = m.unwrap().manifest;
+    w.state_mut().open_dataset(folder.path());
+    let [(true, said)] = &w.state().messages.0[..] else {
+        panic!("{:?}", w.state().messages.0)
+    };
+    assert!(said.contains("not a dataset"), "{said}");
+    w.state_mut().messages.0.clear();
+    w.state_mut().open_dataset(&options.out);
+    until(&mut w, "read", |app| !app.awaits_dataset());
+    press(&mut w, "Dataset");
+    w.get_by_label(&format!(
+        "{} rows of {} pixels",
+        thousands(m.rows),
+        thousands(m.pixels)
+    ));
+    // The pixel with the most rows; then the one that is clicked.
+    let deepest = |w: &Window| {
+        let looked = w.state().dataset.as_ref().unwrap();
+        let view = looked.view.get(&looked.part).unwrap().as_ref().unwrap();
+        (
+            view.grid.deepest().unwrap().title(),
+            view.grid.pixel([48, 32]).map(Pixel::title),
+        )
+    };
+    let (most, middle) = deepest(&w);
+    w.get_by_label(&most);
+    press(&mut w, "A view of the dataset");
+    assert_eq!(w.state().dataset.as_ref().unwrap().cell, Some([48, 32]));
+    w.get_by_label(&middle.unwrap());
+    press(&mut w, "Histograms");
+    w.get_by_label("Histogram of transmittance");
+    w.check_accessibility();
+    // Another view has another picture.
+    w.state_mut().dataset.as_mut().unwrap().part = 1;
+    until(&mut w, "read", |app| !app.awaits_dataset());
+    assert_ne!(deepest(&w).0, most);
+    w.state_mut().training.epochs = Some(3);
+    press(&mut w, "Training");
+    press(&mut w, "Train on this dataset");
+    until(&mut w, "trained", |app| !app.training.is_busy());
+    assert_eq!(w.state().messages.0, []);
+    assert_eq!(trained(&w).1, 3);
+    let trained_on = &w.state().first.own_network().unwrap().model.meta.dataset;
+    assert_eq!(trained_on.as_ref().unwrap().hash, m.hash);
+    // What was drawn last has moved the panel.
+    steps(&mut w);
+    press(&mut w, "Close dataset");
+    w.get_by_label("Train on this scene");
 }
 
 /// What cannot be trained is one message.

@@ -1,4 +1,4 @@
-//! Training on the scene that is open. A thread peels it on a device of its own, trains, and leaves the network of every epoch for the window,
+//! Training on the scene that is open, or on a dataset. A thread peels the scene on a device of its own, trains, and leaves the network of every epoch for the window,
 //! which draws it when it has the time.
 
 use crate::{
@@ -18,6 +18,7 @@ use peelnet_scene::Scene;
 use peelnet_train::{Config, EpochReport, RunOptions, TrainingData, train_watched};
 use std::{
     num::NonZeroUsize,
+    path::Path,
     sync::{
         Arc, Mutex, MutexGuard, PoisonError,
         atomic::{AtomicBool, Ordering},
@@ -218,6 +219,7 @@ impl App {
         };
         let Some(stage) = &self.stage else { return };
         let (gpu, scene) = (self.gpu.clone(), seen(stage));
+        let dataset = self.dataset.as_ref().map(|looked| looked.path.clone());
         let shared = Arc::new(Shared {
             stop: AtomicBool::new(false),
             news: Mutex::default(),
@@ -234,7 +236,11 @@ impl App {
         };
         let own = Arc::clone(&shared);
         let work = move || {
-            let end = work(&gpu, scene, &config, size, rows, &own).map_err(|e| one_line(&*e));
+            let end = match dataset {
+                Some(path) => train_on(&path, &config, &own),
+                None => peel_and_train(&gpu, scene, &config, size, rows, &own),
+            };
+            let end = end.map_err(|e| one_line(&*e));
             own.tell(|news| news.end = Some(end));
         };
         let thread = std::thread::Builder::new().spawn(work);
@@ -324,7 +330,7 @@ fn seen(stage: &Stage) -> Scene {
     scene
 }
 
-fn work(
+fn peel_and_train(
     gpu: &Gpu,
     scene: Scene,
     config: &Config,
@@ -354,7 +360,12 @@ fn work(
         peeled => peeled?,
     };
     drop(gpu);
-    let data = TrainingData::from_datasets(config, &[Dataset::open(&options.out)?])?;
+    train_on(&options.out, config, shared)
+}
+
+fn train_on(dataset: &Path, config: &Config, shared: &Shared) -> Fallible<()> {
+    let folder = tempfile::tempdir()?;
+    let data = TrainingData::from_datasets(config, &[Dataset::open(dataset)?])?;
     let cores = available_parallelism().map_or(1, NonZeroUsize::get);
     let run = RunOptions {
         // One is the window's.

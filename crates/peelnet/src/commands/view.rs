@@ -21,7 +21,7 @@ pub(super) fn run(context: &Context<'_>, args: &ViewArgs) -> Result<(), Failure>
     let camera = camera
         .transpose()
         .map_err(|e| Failure::wrong(format!("--camera: {e}")))?;
-    let mut outputs = context.outputs(args.model.iter().chain([&args.scene]));
+    let mut outputs = context.outputs(args.model.iter().chain([&args.scene]).chain(&args.dataset));
     if let Some(path) = &args.screenshot {
         if !matches!(ImageFormat::from_ending(path), Ok(ImageFormat::Png)) {
             return Err(Failure::wrong(format!(
@@ -54,6 +54,7 @@ pub(super) fn run(context: &Context<'_>, args: &ViewArgs) -> Result<(), Failure>
         time: args.time,
         files_from: context.global.files_from.clone(),
         bare: args.bare,
+        dataset: args.dataset.clone(),
         train: args.train,
         script: is_script.then(|| Script::new(args.frames, args.screenshot.clone())),
         ..Start::new(&args.scene, args.method.clone())

@@ -9,7 +9,7 @@
 //! file. They are built with maud, which escapes all text; charts come from `crate::chart`, which escapes as well.
 
 mod bench;
-mod dataset;
+pub mod dataset;
 mod designs;
 mod effects;
 mod files;

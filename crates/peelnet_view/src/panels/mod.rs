@@ -1,5 +1,7 @@
 //! Everything around the picture.
 
+#[cfg(not(target_arch = "wasm32"))]
+mod dataset;
 mod front;
 pub(crate) mod methods;
 mod numbers;
@@ -83,13 +85,15 @@ fn controls(app: &mut App, ui: &mut Ui) {
 }
 
 fn results(app: &mut App, ui: &mut Ui) {
-    let all: [Section; 4] = [
+    let all: &[Section] = &[
         ("Error of this view", true, numbers::show),
         ("Time and memory", true, numbers::passes),
         ("Pixel", true, pixel::show),
         ("Error against time", true, front::show),
+        #[cfg(not(target_arch = "wasm32"))]
+        ("Dataset", app.dataset.is_some(), dataset::show),
     ];
-    sections(&all, app, ui);
+    sections(all, app, ui);
 }
 
 fn sections(all: &[Section], app: &mut App, ui: &mut Ui) {

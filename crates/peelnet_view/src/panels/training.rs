@@ -6,6 +6,7 @@ use egui::{Align2, ComboBox, DragValue, Sense, Stroke, Ui, WidgetInfo, pos2, vec
 use peelnet_model::Recipe;
 
 const TRAIN: &str = "Peels the scene's views and trains in the background; the picture follows";
+const TRAIN_ON_ROWS: &str = "Trains in the background on the rows that are not held out; the picture of the open scene follows";
 const STOP: &str = "Draws with the network of the last whole epoch";
 
 pub(super) fn show(app: &mut App, ui: &mut Ui) {
@@ -14,8 +15,12 @@ pub(super) fn show(app: &mut App, ui: &mut Ui) {
     ui.horizontal_wrapped(|ui| {
         if !busy {
             let is_open = app.stage.is_some();
-            let train = egui::Button::new("Train on this scene");
-            let train = ui.add_enabled(is_open, train).on_hover_text(TRAIN);
+            let (name, about) = match app.dataset {
+                Some(_) => ("Train on this dataset", TRAIN_ON_ROWS),
+                None => ("Train on this scene", TRAIN),
+            };
+            let train = egui::Button::new(name);
+            let train = ui.add_enabled(is_open, train).on_hover_text(about);
             if train.clicked() {
                 app.begin_training(ui.ctx(), None);
             }
@@ -49,6 +54,7 @@ pub(super) fn show(app: &mut App, ui: &mut Ui) {
         ui.horizontal(|ui| {
             ui.spinner();
             ui.label(match all {
+                0 if app.dataset.is_some() => "reading the dataset".to_owned(),
                 0 => "opening a device".to_owned(),
                 _ if done == all => "training the first epoch".to_owned(),
                 _ => format!("peeled {done} of {all} views"),

@@ -28,7 +28,7 @@ const SHOWN: [Column; 7] = [
 ];
 
 /// A pixel of the dataset.
-pub(super) struct Pixel {
+pub struct Pixel {
     at: [u32; 2],
     /// Linear, over white.
     color: [f32; 3],
@@ -37,7 +37,8 @@ pub(super) struct Pixel {
     rows: Vec<[f64; SHOWN.len()]>,
 }
 
-pub(super) struct Grid {
+/// Cells of a view with a pixel each.
+pub struct Grid {
     size: [u32; 2],
     /// Pixels of a cell's side.
     step: u32,
@@ -57,6 +58,9 @@ impl Grid {
     }
 
     /// Of the first rows of a part.
+    ///
+    /// # Errors
+    /// Rows that cannot be read.
     pub fn read(dataset: &Dataset, part: &Part) -> Result<Self, EvalError> {
         let mut grid = Self::new(part);
         for batch in dataset.batches_where(1 << 16, |other| other.index == part.index) {
@@ -101,6 +105,11 @@ impl Grid {
             image.put_pixel(x, y, Rgb(pixel.color.map(srgb::encode8)));
         }
         image
+    }
+
+    /// The pixel of a cell: column and row, from the upper left.
+    pub fn pixel(&self, [x, y]: [u32; 2]) -> Option<&Pixel> {
+        self.cells.get(&[y, x])
     }
 
     /// The shown pixel with the most rows, the first of several.
@@ -157,6 +166,7 @@ impl Pixel {
         }
     }
 
+    /// Its place and how many rows it has.
     pub fn title(&self) -> String {
         let ([x, y], rows) = (self.at, counted(self.count as u64, "row"));
         let cut = match self.count > MOST_SHOWN {
@@ -166,6 +176,7 @@ impl Pixel {
         format!("Pixel ({x}, {y}): {rows}{cut}")
     }
 
+    /// Its first rows.
     pub fn table(&self) -> Table {
         let lines = self.rows.iter().map(|row| row.map(rounded).to_vec());
         Table::new(SHOWN.map(Column::name), lines)

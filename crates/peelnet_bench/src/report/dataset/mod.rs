@@ -4,7 +4,8 @@ mod grid;
 
 use crate::EvalError;
 use crate::report::{Table, page, picture::data_uri};
-use grid::{Grid, MOST_READ, SIDE};
+pub use grid::{Grid, Pixel};
+use grid::{MOST_READ, SIDE};
 use image::DynamicImage;
 use maud::{Markup, PreEscaped, html};
 use peelnet_core::files::{counted, one_line, printable, thousands};
@@ -97,7 +98,8 @@ pub fn dataset_page(dataset: &Dataset, summary: &Summary) -> Result<String, Eval
     Ok(page::plain_page(title, body, Some(SCRIPT)))
 }
 
-fn caption(m: &Manifest, part: &Part) -> String {
+/// A view in words.
+pub fn caption(m: &Manifest, part: &Part) -> String {
     let scene = printable(&m.scenes[part.scene as usize].name);
     let copy = match part.copy {
         0 => String::new(),
