@@ -127,7 +127,8 @@ def test_ctrl_c_ends_an_extraction_and_keeps_whole_parts(tmp_path):
     assert parts == records
     left = {str(p.relative_to(out)) for p in out.rglob("*") if p.is_file() and p.suffix != ".parquet"}
     assert left <= {"_peelnet/plan.json", *(f"_peelnet/parts/{n}.json" for n in records)}
-    with pytest.raises(peelnet.PeelnetError, match="missing"):
+    # Nothing stays where not even the first part was finished, as on a busy machine.
+    with pytest.raises(peelnet.PeelnetError, match="missing" if records else "no such dataset"):
         peelnet.seal(out)
 
 

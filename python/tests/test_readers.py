@@ -3,8 +3,10 @@
 import hashlib
 import json
 import os
+import socket
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import numpy as np
@@ -88,3 +90,72 @@ def test_duckdb_and_polars(data, columns):
     for name, expected in values.items():
         for found in (of_polars[name].to_numpy(), of_duckdb[name]):
             np.testing.assert_array_equal(found.astype(expected.dtype), expected, err_msg=name)
+
+
+@pytest.fixture
+def bucket(monkeypatch):
+    """The address of a bucket on an S3 server of this machine, which the environment names."""
+    pytest.importorskip("moto", reason="pip install ./python[readers]")
+    boto3 = pytest.importorskip("boto3")
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+    settings = {
+        "AWS_ENDPOINT_URL": f"http://127.0.0.1:{port}",
+        "AWS_ALLOW_HTTP": "true",
+        "AWS_REGION": "us-east-1",
+        "AWS_DEFAULT_REGION": "us-east-1",
+        "AWS_ACCESS_KEY_ID": "readers",
+        "AWS_SECRET_ACCESS_KEY": "readers",
+    }
+    for name, value in settings.items():
+        monkeypatch.setenv(name, value)
+    with subprocess.Popen(
+        [sys.executable, "-m", "moto.server", "-H", "127.0.0.1", "-p", str(port)],
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+    ) as server:
+        try:
+            for _ in range(300):
+                try:
+                    socket.create_connection(("127.0.0.1", port), 1).close()
+                    break
+                except OSError:
+                    time.sleep(0.1)
+            boto3.client("s3").create_bucket(Bucket="rows")
+            yield "s3://rows"
+        finally:
+            server.terminate()
+
+
+# In a process of its own: offline, `datasets` takes `s3://` for the hub's.
+OF_DATASETS = """
+import sys, datasets
+rows = datasets.load_dataset("parquet", data_files=sys.argv[1], cache_dir=sys.argv[2])["train"]
+print(len(rows), sum(rows["layer"]))
+"""
+
+
+def test_object_stores(bucket, tmp_path):
+    duckdb, polars = pytest.importorskip("duckdb"), pytest.importorskip("polars")
+    fs, arrow = pytest.importorskip("pyarrow.fs"), pytest.importorskip("pyarrow.dataset")
+    s3fs = pytest.importorskip("s3fs", reason="pip install ./python[readers]")
+    out = f"{bucket}/a"
+    peelnet.extract(["cups"], size=SIZE, views=2, out=out)
+    expected = peelnet.Dataset(out).read().to_numpy()
+    parts = f"{out}/fragments-*.parquet"
+    of_polars = polars.scan_parquet(parts).collect()
+    connection = duckdb.connect()
+    connection.register_filesystem(s3fs.S3FileSystem())
+    of_duckdb = connection.sql(f"from read_parquet('{parts}')").fetchnumpy()
+    store, root = fs.FileSystem.from_uri(out)
+    found = store.get_file_info(fs.FileSelector(root))
+    of_arrow = arrow.dataset([f.path for f in found if f.extension == "parquet"], filesystem=store).to_table()
+    for name, values in expected.items():
+        for found in (of_polars[name].to_numpy(), of_duckdb[name], of_arrow[name].to_numpy()):
+            np.testing.assert_array_equal(found.astype(values.dtype), values, err_msg=name)
+    command = [sys.executable, "-c", OF_DATASETS, parts, tmp_path]
+    environment = os.environ | {"HF_HUB_OFFLINE": "0"}
+    done = subprocess.run(command, capture_output=True, text=True, check=False, env=environment)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.split() == [str(len(expected["layer"])), str(expected["layer"].sum())]

@@ -541,7 +541,7 @@ fn a_dataset_is_looked_into_and_trained_on() {
     w.state_mut().messages.0.clear();
     w.state_mut().open_dataset(&options.out);
     until(&mut w, "read", |app| !app.awaits_dataset());
-    press(&mut w, "Dataset");
+    steps(&mut w);
     w.get_by_label(&format!(
         "{} rows of {} pixels",
         thousands(m.rows),

@@ -11,7 +11,6 @@ const CLOSE: &str = "The files stay as they are";
 
 pub(super) fn show(app: &mut App, ui: &mut Ui) {
     let Some(looked) = &mut app.dataset else {
-        ui.add(egui::Label::new("Drop a dataset's folder here to look into it.").wrap());
         return;
     };
     let m = looked.dataset.manifest();
@@ -48,9 +47,9 @@ fn views(looked: &mut Looked, ui: &mut Ui) {
             .get(k)
             .map_or(String::new(), |part| caption(m, part))
     };
-    ComboBox::from_label("View of the dataset")
+    ComboBox::from_label("View")
         .selected_text(name(part))
-        .width(200.0)
+        .width(ui.available_width() - 60.0)
         .truncate()
         .show_index(ui, &mut part, m.parts.len(), name);
     looked.part = part as u32;

@@ -85,15 +85,17 @@ fn controls(app: &mut App, ui: &mut Ui) {
 }
 
 fn results(app: &mut App, ui: &mut Ui) {
-    let all: &[Section] = &[
+    #[cfg(not(target_arch = "wasm32"))]
+    if app.dataset.is_some() {
+        sections(&[("Dataset", true, dataset::show)], app, ui);
+    }
+    let all: [Section; 4] = [
         ("Error of this view", true, numbers::show),
         ("Time and memory", true, numbers::passes),
         ("Pixel", true, pixel::show),
         ("Error against time", true, front::show),
-        #[cfg(not(target_arch = "wasm32"))]
-        ("Dataset", app.dataset.is_some(), dataset::show),
     ];
-    sections(all, app, ui);
+    sections(&all, app, ui);
 }
 
 fn sections(all: &[Section], app: &mut App, ui: &mut Ui) {

@@ -52,10 +52,12 @@ fn open(app: &mut App, ui: &mut Ui) {
     });
     if let Some(path) = chosen {
         #[cfg(target_arch = "wasm32")]
-        let source = app.kept_or_named(path);
+        app.open(app.kept_or_named(path), None);
         #[cfg(not(target_arch = "wasm32"))]
-        let source = crate::stage::Source::named(path);
-        app.open(source, None);
+        match path.is_dir() {
+            true => app.open_dataset(&path),
+            false => app.open(crate::stage::Source::named(path), None),
+        }
         ui.close();
     }
 }
@@ -63,7 +65,7 @@ fn open(app: &mut App, ui: &mut Ui) {
 fn path(app: &mut App, ui: &mut Ui, chosen: &mut Option<PathBuf>) {
     let path = ui.label("File, or drop it onto the window");
     ui.horizontal(|ui| {
-        let hint = "scene.toml, mesh.glb, mesh.obj";
+        let hint = "scene.toml, mesh.glb, mesh.obj, dataset";
         let edit = egui::TextEdit::singleline(&mut app.panels.path).hint_text(hint);
         let edit = ui.add(edit).labelled_by(path.id);
         let entered = edit.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
