@@ -139,13 +139,11 @@ impl Window {
                 let answers = answers.autodiff().require_grad();
                 let loss = pixels.loss(answers.clone(), range, config);
                 let slopes = answers.grad_remove(&mut loss.backward());
-                let slopes = slopes.map_or_else(Vec::new, numbers);
+                // A loss that depends on no answer leaves none.
+                let slopes = slopes.map_or_else(|| vec![0.0; rows.len()], numbers);
                 let gradient = network.gradient(&self.inputs, rows.clone(), |tile, answers| {
-                    let part = tile.start - rows.start..tile.end - rows.start;
-                    // A loss without a pixel has no gradient.
-                    if let Some(slopes) = slopes.get(part) {
-                        answers[0].as_flattened_mut()[..slopes.len()].copy_from_slice(slopes);
-                    }
+                    let slopes = &slopes[tile.start - rows.start..tile.end - rows.start];
+                    answers[0].as_flattened_mut()[..slopes.len()].copy_from_slice(slopes);
                 });
                 (gradient, sum(loss.inner()))
             }
