@@ -50,12 +50,7 @@ pub fn find(name: &str) -> Option<fn() -> Outcome> {
 /// Training and its gradients against PyTorch, transparency against other renderers.
 pub fn peers() -> Outcome {
     run("python3 benches/peers/train.py")?;
-    let python = if cfg!(windows) {
-        "Scripts/python.exe"
-    } else {
-        "bin/python"
-    };
-    let python = root().join("out/peers/venv").join(python);
+    let python = python_of("out/peers/venv");
     let test = "--lib gradients_are_pytorchs -- --ignored";
     let mut test = command(&format!("cargo test --release -p peelnet_train {test}"));
     start(test.env("PEELNET_PYTORCH", python))?;
@@ -220,13 +215,17 @@ pub fn cluster(rest: &[&str]) -> Outcome {
     start(ray.env("RAY_USAGE_STATS_ENABLED", "0"))
 }
 
-/// The Python of `target/python`, with the package and these of its extras in it.
-fn installed(extras: &str) -> Result<PathBuf, String> {
-    let folder = root().join("target/python");
-    let python = folder.join(match cfg!(windows) {
+/// The interpreter of a virtual environment.
+fn python_of(folder: &str) -> PathBuf {
+    root().join(folder).join(match cfg!(windows) {
         true => "Scripts/python.exe",
         false => "bin/python",
-    });
+    })
+}
+
+/// The Python of `target/python`, with the package and these of its extras in it.
+fn installed(extras: &str) -> Result<PathBuf, String> {
+    let python = python_of("target/python");
     if !python.exists() {
         let maker = env::var_os("PYTHON").unwrap_or_else(|| "python3".into());
         println!("making a virtual environment in target/python");

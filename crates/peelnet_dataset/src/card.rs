@@ -11,6 +11,7 @@ use crate::column::{Column, ColumnKind};
 use crate::formats::Format;
 use crate::hash::sha256;
 use crate::manifest::{FileEntry, Manifest, Part, to_json};
+use crate::picture;
 use crate::plan::Plan;
 use crate::store::FRAGMENTS;
 
@@ -21,16 +22,7 @@ const NAMES: [&str; 2] = ["README.md", "croissant.json"];
 
 /// Whether a card may have a file of this name.
 pub(crate) fn is_name(name: &str) -> bool {
-    let scene = name
-        .strip_prefix("picture-")
-        .and_then(|n| n.strip_suffix(".png"));
-    let scene = scene.and_then(|digits| digits.parse().ok());
-    NAMES.contains(&name) || scene.is_some_and(|scene| picture(scene) == name)
-}
-
-/// The name of a scene's picture.
-fn picture(scene: u32) -> String {
-    format!("picture-{scene:05}.png")
+    NAMES.contains(&name) || (0..picture::SCENES).any(|scene| picture::name(scene) == name)
 }
 
 const PROJECT: &str = env!("CARGO_PKG_REPOSITORY");
@@ -48,10 +40,8 @@ pub(crate) fn files(plan: &Plan, manifest: &Manifest, pictures: Vec<(u32, Vec<u8
     ];
     let texts = NAMES.map(str::to_owned).into_iter().zip(texts);
     let texts = texts.map(|(name, text)| (name, text.into_bytes()));
-    let pictures = pictures
-        .into_iter()
-        .map(|(scene, png)| (picture(scene), png));
-    texts.chain(pictures).collect()
+    let name = |(scene, png)| (picture::name(scene), png);
+    texts.chain(pictures.into_iter().map(name)).collect()
 }
 
 /// What a manifest says of these files.
@@ -173,7 +163,7 @@ fn readme(plan: &Plan, m: &Manifest, drawn: &[u32]) -> String {
             .filter(|part| part.scene as usize == k)
             .count();
         let shown = match drawn.contains(&(k as u32)) {
-            true => format!("![]({})", picture(k as u32)),
+            true => format!("![]({})", picture::name(k as u32)),
             false => String::new(),
         };
         let row = [

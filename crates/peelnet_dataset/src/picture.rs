@@ -1,6 +1,7 @@
 //! A small picture of a scene for the dataset's card, of the rows of its first view: the transparent surfaces alone, before nothing.
 
 use base64::{Engine as _, engine::general_purpose::STANDARD};
+use peelnet_core::srgb::encode8;
 
 use crate::column::FragmentBatch;
 use crate::manifest::Part;
@@ -9,10 +10,15 @@ use crate::manifest::Part;
 const SIDE: u32 = 192;
 
 /// Scenes that have pictures: the first ones.
-const SCENES: u32 = 100;
+pub(crate) const SCENES: u32 = 100;
 
 /// Bytes of a PNG at most: those of the pixels and a header. More is no picture of ours.
 const MAX_BYTES: usize = 5 * (SIDE * SIDE) as usize;
+
+/// The name of a scene's picture.
+pub(crate) fn name(scene: u32) -> String {
+    format!("picture-{scene:05}.png")
+}
 
 /// Gathers what is seen of each fragment. Pixels of the picture are means over squares of the view's.
 #[derive(Debug)]
@@ -60,10 +66,8 @@ impl Picture {
         let coverage = |sum: &[f32; 4]| (sum[3] / self.pixels).min(1.0);
         let mut bytes = Vec::with_capacity(4 * self.sums.len());
         for sum in &self.sums {
-            let color = |channel: f32| match channel / sum[3] {
-                linear if linear > 0.0 => srgb(linear.min(1.0)),
-                _ => 0,
-            };
+            // Without rows 0 / 0, which is stored as 0.
+            let color = |channel: f32| encode8(channel / sum[3]);
             let [r, g, b, _] = *sum;
             let alpha = (255.0 * coverage(sum)).round() as u8;
             bytes.extend([color(r), color(g), color(b), alpha]);
@@ -82,16 +86,6 @@ impl Picture {
         // Into memory; and a picture is not worth a dataset.
         written.ok().map(|()| STANDARD.encode(png))
     }
-}
-
-/// IEC 61966-2-1, of a value from 0 to 1.
-fn srgb(linear: f32) -> u8 {
-    let encoded = if linear <= 0.003_130_8 {
-        12.92 * linear
-    } else {
-        1.055 * linear.powf(1.0 / 2.4) - 0.055
-    };
-    (255.0 * encoded).round() as u8
 }
 
 /// Takes the pictures out of the records of parts, with the numbers of their scenes. What is none of ours is left out: records come from

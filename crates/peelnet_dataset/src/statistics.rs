@@ -71,18 +71,11 @@ fn bucket_of_float(value: f32) -> usize {
     ((value + 0.0).to_bits() >> 23) as usize % BUCKETS
 }
 
-/// The bucket of an integer: its number of bits.
+/// The bucket of an integer: its number of bits, of its exponent as a 64-bit float, which vector instructions find.
 #[inline(always)]
 fn bucket_of_integer(value: u32) -> usize {
-    (u32::BITS - value.leading_zeros()) as usize % BUCKETS
+    (f64::from(value).to_bits() >> 52).saturating_sub(1022) as usize % BUCKETS
 }
-
-/// The same of one up to [`SMALL`], which 32-bit floats hold exactly: from its exponent, in vector instructions.
-#[inline(always)]
-fn bucket_of_small_integer(value: u32) -> usize {
-    ((value as f32).to_bits() >> 23).saturating_sub(126) as usize % BUCKETS
-}
-const SMALL: u32 = 1 << 24;
 
 /// Values of a block that lie in no more buckets than these are compared with one bucket after the other, in bytes.
 const FEW: usize = 24;
@@ -148,13 +141,9 @@ impl WithSimd for Add<'_, '_> {
     fn with_simd<S: Simd>(self, _: S) {
         let Self(to, values) = self;
         match values {
-            ColumnSlice::F32(v) if to.column.is_fraction() => {
-                to.add_all(v, bucket_of_fraction, bucket_of_fraction, f32::MAX);
-            }
-            ColumnSlice::F32(v) => to.add_all(v, bucket_of_float, bucket_of_float, f32::MAX),
-            ColumnSlice::U32(v) => {
-                to.add_all(v, bucket_of_integer, bucket_of_small_integer, SMALL);
-            }
+            ColumnSlice::F32(v) if to.column.is_fraction() => to.add_all(v, bucket_of_fraction),
+            ColumnSlice::F32(v) => to.add_all(v, bucket_of_float),
+            ColumnSlice::U32(v) => to.add_all(v, bucket_of_integer),
         }
     }
 }
@@ -183,22 +172,18 @@ impl Gatherer {
         &mut self,
         values: &[T],
         bucket: impl Fn(T) -> usize,
-        of_small: impl Fn(T) -> usize,
-        small: T,
     ) {
         for block in values.chunks(BLOCK) {
-            self.add_block(block, &bucket, &of_small, small);
+            self.add_block(block, &bucket);
         }
     }
 
-    /// In several passes, of which each becomes vector instructions as far as it can. `of_small` is the bucket of values up to `small`.
+    /// In several passes, of which each becomes vector instructions as far as it can.
     #[inline(always)]
     fn add_block<T: Copy + Default + PartialOrd + Into<f64>>(
         &mut self,
         values: &[T],
         bucket: impl Fn(T) -> usize,
-        of_small: impl Fn(T) -> usize,
-        small: T,
     ) {
         let Some(&first) = values.first() else { return };
         if self.rows == 0 {
@@ -231,8 +216,8 @@ impl Gatherer {
         let counts = &mut *self.counts;
         let (first, last) = (bucket(min), bucket(max));
         // Buckets ascend with values, but for negative floats.
-        if min >= T::default() && max <= small && last - first < FEW {
-            count_few(all, first, &mut counts[0][first..=last], of_small);
+        if min >= T::default() && last - first < FEW {
+            count_few(all, first, &mut counts[0][first..=last], bucket);
             return;
         }
         for chunk in chunks {

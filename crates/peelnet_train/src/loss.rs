@@ -65,12 +65,9 @@ impl Window {
             rows.extend(data.rows_of(example));
         }
         first.push(rows.len() as u32);
-        let count = data.inputs.len();
-        let inputs = columns(data.row_columns().take(count), &rows, |k, v| {
-            normalisation[k].apply(v)
-        });
+        let inputs = columns(data.inputs.iter(), &rows, |k, v| normalisation[k].apply(v));
         let same = |_, value| value;
-        let targets = columns(data.row_columns().skip(count), &rows, same);
+        let targets = columns(data.row_columns().skip(data.inputs.len()), &rows, same);
         let fixed = columns(data.example_columns(), order, same);
         let of = match data.pixels {
             Some(_) => {

@@ -86,7 +86,7 @@ impl Shape {
 }
 
 /// Columns of numbers, one after the other, all equally long.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(crate) struct Columns {
     pub(crate) values: Vec<f32>,
     pub(crate) rows: usize,
@@ -100,7 +100,7 @@ impl Columns {
     }
 }
 
-/// Rows that pass through the network together: the values of all layers fit the fastest cache. Missing rows at the end are zeros.
+/// Rows that pass through the network together: the values of all layers fit the fastest cache.
 pub(crate) const TILE: usize = 64;
 
 /// Sums that are formed side by side, which makes them vector instructions. They are the same numbers on every processor.
@@ -119,7 +119,7 @@ pub(crate) struct Network<'a> {
 }
 
 impl Network<'_> {
-    /// Calls `each` with the answers to normalised inputs, tile by tile: its rows, and a column for each output.
+    /// Calls `each` for every tile of the normalised inputs, with the tile's rows and the network's outputs for them, a column for each.
     pub(crate) fn forward(
         &self,
         inputs: &Columns,
@@ -147,7 +147,10 @@ impl Network<'_> {
             let last = values.len() - 1;
             slopes.clone_from(&values[last]);
             slope(rows.clone(), &mut slopes);
-            clear_after(&mut slopes, rows.len());
+            // What a tile has behind the last row is of rows before.
+            for slope in &mut slopes {
+                slope.as_flattened_mut()[rows.len()..].fill(0.0);
+            }
             let mut end = gradient.len();
             for (k, layer) in values.windows(2).enumerate().rev() {
                 let [inputs, outputs] = layer else { continue };
@@ -186,7 +189,6 @@ impl Network<'_> {
             for (k, tile) in values[0].iter_mut().enumerate() {
                 tile.as_flattened_mut()[..rows.len()].copy_from_slice(inputs.part(k, &rows));
             }
-            clear_after(&mut values[0], rows.len());
             let mut rest = self.parameters;
             for k in 0..values.len() - 1 {
                 let (before, after) = values.split_at_mut(k + 1);
@@ -202,15 +204,6 @@ impl Network<'_> {
             }
             each(rows, &values);
         }
-    }
-}
-
-/// Sets what lies behind the last row to 0.
-fn clear_after(tiles: &mut [Tile], rows: usize) {
-    if rows < TILE {
-        tiles
-            .iter_mut()
-            .for_each(|tile| tile.as_flattened_mut()[rows..].fill(0.0));
     }
 }
 

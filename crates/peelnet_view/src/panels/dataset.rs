@@ -1,7 +1,10 @@
 //! The dataset that is open: its views, the rows of a pixel, and histograms.
 
 use super::{button, digits, error, printable};
-use crate::{app::App, dataset::Looked};
+use crate::{
+    app::App,
+    dataset::{Looked, View},
+};
 use egui::{ComboBox, Grid, Rect, ScrollArea, Sense, Stroke, Ui, WidgetInfo, vec2};
 use peelnet_bench::report::dataset::caption;
 use peelnet_core::files::{counted, shown};
@@ -25,7 +28,7 @@ pub(super) fn show(app: &mut App, ui: &mut Ui) {
     match looked.view.get(&looked.part) {
         None => drop(ui.spinner()),
         Some(Err(e)) => error(ui, e),
-        Some(Ok(_)) => pixels(looked, ui),
+        Some(Ok(view)) => pixels(view, &mut looked.cell, ui),
     }
     ui.collapsing("Histograms", |ui| {
         let m = looked.dataset.manifest();
@@ -56,10 +59,7 @@ fn views(looked: &mut Looked, ui: &mut Ui) {
 }
 
 /// The view's picture, and the rows of the pixel that was clicked, or of that with the most.
-fn pixels(looked: &mut Looked, ui: &mut Ui) {
-    let Some(Ok(view)) = looked.view.get(&looked.part) else {
-        return;
-    };
+fn pixels(view: &View, clicked: &mut Option<[u32; 2]>, ui: &mut Ui) {
     let [width, height] = view.picture.size().map(|side| side as f32);
     let wide = ui.available_width().min(3.0 * width);
     let picture =
@@ -74,18 +74,18 @@ fn pixels(looked: &mut Looked, ui: &mut Ui) {
         [(at.x * width) as u32, (at.y * height) as u32]
     };
     if response.clicked() {
-        looked.cell = response.interact_pointer_pos().map(cell);
+        *clicked = response.interact_pointer_pos().map(cell);
     }
-    if let Some([x, y]) = looked.cell {
+    if let Some([x, y]) = *clicked {
         let side = response.rect.width() / width;
-        let corner = response.rect.min + side * vec2(x as f32, y as f32);
-        let mark = Rect::from_min_size(corner, vec2(side, side)).expand(2.0);
+        let upper_left = response.rect.min + side * vec2(x as f32, y as f32);
+        let mark = Rect::from_min_size(upper_left, vec2(side, side)).expand(2.0);
         let stroke = Stroke::new(1.5, ui.visuals().error_fg_color);
         ui.painter()
             .rect_stroke(mark, 0.0, stroke, egui::StrokeKind::Outside);
     }
-    let clicked = looked.cell.map(|cell| view.grid.pixel(cell));
-    let Some(pixel) = clicked.unwrap_or_else(|| view.grid.deepest()) else {
+    let pixel = clicked.map(|cell| view.grid.pixel(cell));
+    let Some(pixel) = pixel.unwrap_or_else(|| view.grid.deepest()) else {
         ui.weak("No rows here.");
         return;
     };
