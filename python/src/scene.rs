@@ -109,7 +109,7 @@ type Load = dyn Fn(Option<f32>) -> Result<peelnet::Scene, SceneError> + Send + S
 /// A scene: triangles, materials, lights and views.
 ///
 /// Args:
-///     path: A scene file (.toml), a mesh (.gltf, .glb, .obj, .ply, .stl), or the name of a shipped scene (see `samples()`).
+///     path: A scene file (.toml), a mesh (.gltf, .glb, .obj, .ply, .stl, .splat, .spz), or the name of a shipped scene (see `samples()`).
 ///     time: Time in the scene's timeline; material values are interpolated between its states.
 ///     files_from: Folders in which a mesh file may name textures and buffers, beside its own and the scene's.
 ///
@@ -151,7 +151,7 @@ impl Scene {
     /// Reads a scene from bytes.
     ///
     /// Args:
-    ///     name: The file's name; its ending says what the bytes are (.toml, .gltf, .glb, .obj, .ply, .stl).
+    ///     name: The file's name; its ending says what the bytes are (.toml, .gltf, .glb, .obj, .ply, .stl, .splat, .spz).
     ///     data: The file's bytes.
     ///     files: Bytes of the files that it names, by path relative to the same folder as `name`.
     ///     time: Time in the scene's timeline.

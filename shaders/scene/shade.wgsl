@@ -1,6 +1,7 @@
 // Radiance and opacity of a surface. Which of it exists is decided when a shader is linked, by what the scene's materials and
 // lights need. The CPU reference is peelnet_core::shading.
 // Loops: 2: peelnet_scene::MAX_LIGHTS.
+@if(display) import package::helpers::display::shown_of;
 import package::scene::camera::camera;
 @if(emission || transmission) import package::helpers::guards::EMISSIVE_ALPHA;
 @if(color_map) import package::scene::maps::color_at;
@@ -9,6 +10,7 @@ import package::scene::camera::camera;
 @if(occlusion_map) import package::scene::maps::occlusion_at;
 @if(emissive_map) import package::scene::maps::emission_at;
 import package::scene::material::{Material, materials};
+@if(splat) import package::scene::splat::{FAINTEST, MOST_COVERED};
 import package::scene::surface::Surface;
 
 // As `LightData` in peelnet_render, geometry/uniforms.rs.
@@ -41,6 +43,11 @@ struct Base {
 
 fn base_of(surface: Surface, material: Material) -> Base {
     var color = surface.material_color;
+    @if(splat) {
+        let gaussian = surface.gaussian / surface.depth_linear;
+        let share = exp(-0.5 * dot(gaussian, gaussian));
+        color *= vec4f(surface.splat.rgb, min(surface.splat.a * share, MOST_COVERED));
+    }
     @if(vertex_colors) color *= surface.color;
     @if(clear_map) color *= color_at(surface.uv);
     @if(color_map && !clear_map) color = vec4f(color.rgb * color_at(surface.uv).rgb, color.a);
@@ -70,7 +77,7 @@ fn mean_covering(base: Base) -> f32 {
 // Opacity alone, for passes that need no colour.
 fn opacity(surface: Surface) -> f32 {
     let material = materials[surface.material];
-    @if(clear_map || vertex_colors || transmission) {
+    @if(splat || clear_map || vertex_colors || transmission) {
         return mean_covering(base_of(surface, material));
     }
     @elif(emission) {
@@ -85,8 +92,8 @@ fn opacity(surface: Surface) -> f32 {
 fn shade(surface: Surface) -> vec4f {
     let material = materials[surface.material];
     let base = base_of(surface, material);
-    var premultiplied = reflected(surface, material, base.color) * base.coverage;
-    @if(emission) premultiplied += emitted(surface, material);
+    var premultiplied = blended(reflected(surface, material, base.color)) * base.coverage;
+    @if(emission) premultiplied += blended(emitted(surface, material));
     return vec4f(premultiplied, mean_covering(base));
 }
 
@@ -100,7 +107,7 @@ fn opaque(surface: Surface) -> vec3f {
     let material = materials[surface.material];
     var color = reflected(surface, material, base_of(surface, material).color);
     @if(emission) color += emitted(surface, material);
-    return color;
+    return blended(color);
 }
 
 // Un-premultiplied radiance and opacity, as datasets keep it. An invisible fragment's emission has no such form.
@@ -112,7 +119,7 @@ fn radiance(surface: Surface) -> vec4f {
     @else {
         let material = materials[surface.material];
         let base = base_of(surface, material);
-        return vec4f(reflected(surface, material, base.color), mean_covering(base));
+        return vec4f(blended(reflected(surface, material, base.color)), mean_covering(base));
     }
 }
 
@@ -126,6 +133,12 @@ fn emitted(surface: Surface, material: Material) -> vec3f {
     var emission = material.emission;
     @if(emissive_map) emission *= emission_at(surface.uv);
     return emission;
+}
+
+// Radiance in the space in which the scene blends. Splats' is already.
+fn blended(radiance: vec3f) -> vec3f {
+    @if(display && !splat) return shown_of(radiance);
+    @else return radiance;
 }
 
 @if(!lit)
@@ -236,8 +249,9 @@ fn reflected(surface: Surface, material: Material, albedo: vec3f) -> vec3f {
 }
 
 // Whether this point of the surface is a hole.
-@if(cutout)
+@if(cutout || splat)
 fn is_hole(surface: Surface) -> bool {
     let material = materials[surface.material];
-    return base_of(surface, material).coverage < material.alpha_cutoff;
+    @if(splat) return base_of(surface, material).coverage < FAINTEST;
+    @else return base_of(surface, material).coverage < material.alpha_cutoff;
 }

@@ -1,6 +1,8 @@
 // The only vertex shader of surfaces: every pass shares it, so that depth comes out bit-identical in all of them.
 import package::scene::camera::camera;
 @if(material) import package::scene::material::materials;
+@if(splat_color) import package::scene::splat::splat_color;
+@if(splat) import package::scene::splat::{splat_corner, splats};
 import package::scene::surface::Surface;
 
 struct Vertex {
@@ -10,12 +12,24 @@ struct Vertex {
     @if(normal_map) @location(3) tangent: vec4f,
     @if(vertex_colors) @location(4) color: vec4f,
     @if(lit) @location(5) normal: vec3f,
+    // Its number.
+    @if(splat) @location(6) splat: u32,
 }
 
 @vertex
-fn vertex_main(vertex: Vertex, @if(numbered) @builtin(vertex_index) index: u32) -> Surface {
+fn vertex_main(vertex: Vertex, @if(numbered || splat) @builtin(vertex_index) index: u32) -> Surface {
     var out: Surface;
-    out.position = camera.clip_from_world * vec4f(vertex.position, 1.0);
+    @if(splat) {
+        let splat = splats[vertex.splat];
+        let corner = splat_corner(splat, vertex.position, index % 3u);
+        out.position = corner.position;
+        out.gaussian = corner.gaussian * corner.position.w;
+        out.splat = vec4f(1.0, 1.0, 1.0, corner.opacity);
+        @if(splat_color) out.splat = vec4f(splat_color(splat, vertex.position), corner.opacity);
+    }
+    @else {
+        out.position = camera.clip_from_world * vec4f(vertex.position, 1.0);
+    }
     @if(lit) {
         out.world = vertex.position;
         out.normal = vertex.normal;

@@ -1,6 +1,6 @@
 // Whether a transparent fragment counts at all.
 import package::scene::camera::camera;
-@if(cutout) import package::scene::shade::is_hole;
+@if(cutout || splat) import package::scene::shade::is_hole;
 @if(mapped) import package::scene::maps::remember_footprint;
 import package::helpers::hash::pixel_hash;
 import package::scene::surface::Surface;
@@ -28,7 +28,7 @@ fn visible(surface: Surface) -> bool {
             return false;
         }
     }
-    @if(cutout) {
+    @if(cutout || splat) {
         if is_hole(surface) {
             return false;
         }

@@ -17,7 +17,7 @@ use tempfile::TempDir;
 /// The name of a fuzz target, what it does with any bytes, and files to begin from: sound ones, and some that are nearly so.
 pub type Reader = (&'static str, fn(&[u8]), fn() -> Vec<Vec<u8>>);
 
-pub const READERS: [Reader; 9] = [
+pub const READERS: [Reader; 11] = [
     (
         "scene",
         |bytes| load("s.toml", bytes),
@@ -31,6 +31,12 @@ pub const READERS: [Reader; 9] = [
     ("stl", |bytes| load("f.stl", bytes), || committed("stl")),
     ("texture", texture, texture_seeds),
     ("results", results, || committed("results")),
+    (
+        "splat",
+        |bytes| load("f.splat", bytes),
+        || committed("splat"),
+    ),
+    ("spz", |bytes| load("f.spz", bytes), || committed("spz")),
 ];
 
 /// The files in `tests/seeds`, each with what its reader knows: polygons and strips, colours, textures, lights, timelines, sparse accessors.

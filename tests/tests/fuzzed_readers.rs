@@ -86,4 +86,4 @@ macro_rules! readers {
     ($($name:ident),*) => { $(#[test] fn $name() { search(stringify!($name)); })* };
 }
 
-readers!(scene, obj, dataset, model, gltf, ply, stl, texture, results);
+readers!(scene, obj, dataset, model, gltf, ply, stl, texture, results, splat, spz);

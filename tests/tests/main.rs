@@ -20,6 +20,7 @@ mod references;
 mod report_in_browser;
 mod samples;
 mod shader_functions;
+mod splats;
 mod surfaces;
 mod tiles;
 mod training_on_pixels;

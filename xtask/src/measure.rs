@@ -22,6 +22,9 @@ const COMPARED_METHODS: &str = "abuffer,linked-list,painter-triangle,wboit-eq9,w
 /// What is judged with a surface apart from all others.
 const APART_METHODS: &str = "abuffer,wboit-eq9,mboit4,mboit6,wavelet-3:bounds=pixel,bins-8,bins-16,avboit,kbuffer-4,slabs:keep=small,slabs:keep=medium,slabs,deep-anchored-medium,deep-small,deep-medium,deep-large,deep-medium:range=boxes,deep-medium:range=frame,one,one-wide,deep-one,deep-one-wide,deep-one:range=last,deep-one-wide:range=last,deep-one:range=frame,deep-one-wide:range=frame";
 
+/// What splats are drawn with: sorted, by moments and bins, and by slabs over what is known of depths.
+const SPLAT_METHODS: &str = "abuffer,linked-list,painter-object,painter-triangle,painter-object:sort=off,wboit-eq9,mboit4,bins-16,kbuffer-8,stochastic-16,slabs:range=pixel,deep-medium,deep-medium:range=pixel,deep-large,deep-large:range=pixel";
+
 /// Commands of peelnet whose results are kept: the name, the command without `--out`, in which names in angle brackets stand for what
 /// [`filled`] puts there, and the files of its output that are kept; where none are, what it prints is, as JSON.
 ///
@@ -40,6 +43,10 @@ const STEPS: &str = "
     apart-backdrop | bench <apart backdrop> --size 256x192 --views 1 --frames 0 --methods <apart> | table.md
     path | bench path sixteen-held smoke-held --size 256x192 --methods <path> | path.csv path.md path-error.svg path-change.svg
     samples | bench cups-held foliage-held --samples 4 --size 256x192 --views 1 --frames 3 --methods <path> | table.md
+    splats | bench data/splats/cloud.toml --size 640x480 --frames 3 --methods <splats>,painter-triangle:sort=gpu | results.json.xz table.md
+    splats-cards | bench data/splats/cloud-cards.toml --size 640x480 --frames 3 --methods <splats> | results.json.xz table.md
+    splats-small | bench data/splats/cloud.toml data/splats/cloud-cards.toml --size 256x192 --frames 0 --methods <splats> | results.json.xz table.md
+    splats-path | bench path data/splats/cloud.toml data/splats/cloud-cards.toml --size 256x192 --frames 24 --methods <splats> | path.csv path.md path-change.svg
     effects | bench effects --size 512x384 --frames 9 | effects.md effects-layers.svg
     scaling | bench scaling --frames 3 | scaling.md scaling-fragments.svg scaling-pixels.svg scaling-triangles.svg
     thesis-full | run --full --size 512x384 | results.json.xz table.md
@@ -81,6 +88,7 @@ fn filled(line: &str) -> Result<String, String> {
         .replace("<fresh>", &files_in("data/fresh", |_| true)?.join(" "))
         .replace("<validation>", &VALIDATION_SCENES.map(scene_file).join(" "))
         .replace("<path>", PATH_METHODS)
+        .replace("<splats>", SPLAT_METHODS)
         .replace("<one-pass>", ONE_PASS_METHODS)
         .replace("<extract>", extract))
 }

@@ -123,7 +123,8 @@ pub fn fuzz(seconds: &str) -> Outcome {
     run("cargo run --package peelnet_tests --example write_seeds")?;
     // One for each reader of files that users hand over.
     for target in [
-        "scene", "obj", "gltf", "ply", "stl", "texture", "dataset", "model", "results",
+        "scene", "obj", "gltf", "ply", "stl", "texture", "dataset", "model", "results", "splat",
+        "spz",
     ] {
         // Errors of memory, with what finding them takes; then what an input of less than 1 MB may take: 256 MB and a second. A scene file
         // may ask for a million generated triangles.

@@ -487,7 +487,7 @@ pub struct RecommendArgs {
 
 A dataset is read completely: values that follow from other rows are recomputed, and the exit code is 1 if they disagree.")]
 pub struct InspectArgs {
-    /// A scene (.toml, .gltf, .glb, .obj, .ply, .stl or the name of a shipped one), a dataset (a folder) or a model (.safetensors)
+    /// A scene (.toml, .gltf, .glb, .obj, .ply, .stl, .splat, .spz or the name of a shipped one), a dataset (a folder) or a model (.safetensors)
     #[arg(value_name = "SCENE|DATASET|MODEL")]
     pub what: PathBuf,
     /// For a scene: also measure what each of its effects costs on this machine

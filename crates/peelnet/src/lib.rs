@@ -5,7 +5,7 @@
 //!
 //! | here | crate | for |
 //! |---|---|---|
-//! | [`Scene`], [`scene`] | `peelnet_scene` | TOML, glTF, OBJ, PLY and STL files, generated meshes, cameras, shipped scenes |
+//! | [`Scene`], [`scene`] | `peelnet_scene` | TOML, glTF, OBJ, PLY, STL and Gaussian splat files, generated meshes, cameras, shipped scenes |
 //! | [`Gpu`], [`Renderer`], [`render`] | `peelnet_render` | an adapter and a device, drawing a scene with any method |
 //! | [`peel`] | `peelnet_peel` | every fragment of a scene as a row |
 //! | [`dataset`] | `peelnet_dataset` | reading those rows: Parquet, CSV and NPY |

@@ -13,7 +13,8 @@ use crate::{
     renderer::{Prepared, Renderer},
     target::Target,
 };
-use peelnet_scene::Camera;
+use peelnet_core::srgb;
+use peelnet_scene::{Blending, Camera};
 use web_time::Instant;
 
 /// Times that a frame is drawn until it has room for all of its fragments. Two do for a frame in one tile.
@@ -106,10 +107,18 @@ impl Renderer {
             }
             sum.add(drawn);
             let view = method.ready.as_ref().and_then(|r| r.frame.image.as_ref());
-            let read = match view {
+            let mut read: Vec<[f32; 4]> = match view {
                 Some(view) => self.gpu().read_texture_async(view).await?,
                 None => Vec::new(),
             };
+            // Images are linear light, whatever colours were mixed in.
+            if self.scene.scene().blending == Blending::Display {
+                for pixel in &mut read {
+                    for shown in &mut pixel[..3] {
+                        *shown = srgb::decode(*shown);
+                    }
+                }
+            }
             if pixels.is_empty() {
                 pixels = read;
                 continue;

@@ -4,7 +4,7 @@
 
 use crate::{
     material::{Lighting, Material, NUMBERS, Number},
-    scene::{Light, Object, Scene, Source},
+    scene::{Blending, Light, Object, Scene, Source},
 };
 use bitflags::bitflags;
 use std::{fmt, sync::LazyLock};
@@ -46,6 +46,10 @@ bitflags! {
         const TRANSMISSION = 1 << 14;
         /// Back faces are left out.
         const CULLED = 1 << 15;
+        /// Splats, see [`crate::Splats`].
+        const SPLAT = 1 << 16;
+        /// Blends as displays show, see [`crate::Blending`].
+        const DISPLAY = 1 << 17;
     }
 }
 
@@ -74,6 +78,10 @@ impl MaterialFlags {
         let mut flags: Self = needed.map(|effect| effect.flag).collect();
         let is_clear = material.maps.color.as_ref().is_some_and(|m| m.has_alpha);
         flags.set(Self::CLEAR_MAP, is_clear);
+        if object.mesh.splats.is_some() {
+            // They have neither a surface to be lit nor places in textures.
+            flags &= Self::SPLAT | Self::DISPLAY;
+        }
         flags.with_implied()
     }
 
@@ -162,7 +170,7 @@ impl Effect {
         object: &Object,
         lights: MaterialFlags,
     ) -> bool {
-        let is_lit = !lights.is_empty() && material.lighting != Lighting::Unlit;
+        let is_lit = lights.contains(MaterialFlags::LIT) && material.lighting != Lighting::Unlit;
         if self.flag.needs_light() && !is_lit {
             return false;
         }
@@ -217,12 +225,14 @@ impl Scene {
         }
     }
 
-    /// Which of [`MaterialFlags::LIT`] and [`MaterialFlags::SUN`] its lights make possible.
+    /// Which of [`MaterialFlags::LIT`] and [`MaterialFlags::SUN`] its lights make possible, and whether it blends in
+    /// [`MaterialFlags::DISPLAY`] space.
     pub fn light_flags(&self) -> MaterialFlags {
         let is_sun = |l: &Light| matches!(l.source, Source::Toward(_));
         let mut flags = MaterialFlags::empty();
         flags.set(MaterialFlags::LIT, !self.lights.is_empty());
         flags.set(MaterialFlags::SUN, self.lights.iter().any(is_sun));
+        flags.set(MaterialFlags::DISPLAY, self.blending == Blending::Display);
         flags
     }
 }
@@ -359,6 +369,26 @@ pub static EFFECTS: &[Effect] = &[
         needed_by: "`transmission_color = [r, g, b]`",
         adds: "three channels of transmittance instead of one where it is not grey",
         rule: Rule::Number("transmission"),
+    },
+    Effect {
+        name: "splats",
+        flag: MaterialFlags::SPLAT,
+        needed_by: "a mesh of Gaussian splats",
+        adds: "48 bytes a splat and 8 to 96 of its colour, a projection for each corner, a comparison and a discard",
+        rule: Rule::Surface(
+            |_, object, _| object.mesh.splats.is_some(),
+            |scene| scene.objects.retain(|o| o.mesh.splats.is_none()),
+        ),
+    },
+    Effect {
+        name: "display-space",
+        flag: MaterialFlags::DISPLAY,
+        needed_by: "`blending = \"display\"`, or splats without `blending = \"linear\"`",
+        adds: "the transfer function of sRGB for each fragment of a surface",
+        rule: Rule::Surface(
+            |_, _, scene| scene.contains(MaterialFlags::DISPLAY),
+            |scene| scene.blending = Blending::Linear,
+        ),
     },
     Effect {
         name: "monochrome",

@@ -120,7 +120,10 @@ impl Scene {
             numbers.all(|values| values.iter().all(|x| *x == values[0]))
                 && maps.into_iter().flatten().all(|map| map.is_grey)
         };
-        let vertices = |o: &Object| o.mesh.colors.iter().all(|&[r, g, b, _]| grey([r, g, b]));
+        let vertices = |o: &Object| {
+            let mut colors = o.mesh.colors.iter();
+            o.mesh.splats.is_none() && colors.all(|&[r, g, b, _]| grey([r, g, b]))
+        };
         let object = |o: &Object| o.materials.iter().all(material) && vertices(o);
         grey(self.background)
             && self.lights.iter().all(|l| grey(l.color))

@@ -18,7 +18,7 @@ use crate::{
     files::{Files, MAX_TEXT},
     import,
     material::Lighting,
-    scene::{Object, Scene, State},
+    scene::{Blending, Object, Scene, State},
 };
 use glam::Vec3;
 use loader::Loader;
@@ -33,8 +33,8 @@ use timeline::{NO_TIMELINE, Snapshot};
 
 impl Scene {
     /// Reads a scene file and everything it names from the file system, a scene with a timeline in its first state. A mesh file (glTF, GLB,
-    /// OBJ, PLY, STL) is a scene too: with its own lights and cameras; where it has none, with two lights, and a camera that sees all of it from
-    /// three sides. Its materials are as the file says: opaque ones stay opaque.
+    /// OBJ, PLY, STL, or splats: PLY, SPLAT, SPZ, glTF) is a scene too: with its own lights and cameras; where it has none, with two lights, and a
+    /// camera that sees all of it from three sides. Its materials are as the file says: opaque ones stay opaque.
     ///
     /// # Errors
     /// The first thing that is wrong, with file, line or key, and a hint.
@@ -112,7 +112,7 @@ impl Scene {
 }
 
 /// Endings of the names of files that are scenes, in lower case.
-pub const ENDINGS: [&str; 6] = ["toml", "gltf", "glb", "obj", "ply", "stl"];
+pub const ENDINGS: [&str; 8] = ["toml", "gltf", "glb", "obj", "ply", "stl", "splat", "spz"];
 
 fn load(path: &Path, mut files: Files<'_>, time: Option<f32>) -> Result<Scene, SceneError> {
     if let Some(load) = import::loader(path) {
@@ -225,7 +225,9 @@ fn assemble(raw: RawScene, mut loader: Loader<'_>, time: Option<f32>) -> Result<
         time: s.time,
         label: s.label,
     });
+    let blending = raw.blending.unwrap_or_else(|| Blending::of(&objects));
     Ok(Scene {
+        blending,
         name,
         source: loader.path.to_owned(),
         hash: loader.files.hash(),

@@ -6,6 +6,7 @@ mod obj;
 mod ply;
 mod ply_elements;
 mod polygons;
+mod splats;
 mod stl;
 mod surface;
 mod textures;
@@ -23,6 +24,8 @@ pub(crate) struct Imported {
     pub cameras: Vec<(String, Camera)>,
     /// Whether files of its format can hold lights and blended materials.
     pub is_scene: bool,
+    /// Whether up is −y: of splats in the axes of COLMAP, which the networks that make them take over.
+    pub is_y_down: bool,
 }
 
 /// Reads a mesh file. Every file that is read is recorded, and what is missing, repaired or not drawn is a warning.
@@ -35,6 +38,15 @@ pub(crate) fn loader(path: &Path) -> Option<Load> {
         "gltf" | "glb" => gltf::load,
         "obj" => obj::load,
         "ply" => |path, files| surface::load(path, files, ply::read),
+        "splat" => |path, files| surface::load(path, files, splats::antimatter::read),
+        "spz" => |path, files| {
+            let loaded = surface::load(path, files, splats::spz::read)?;
+            let is_y_down = false;
+            Ok(Imported {
+                is_y_down,
+                ..loaded
+            })
+        },
         "stl" => |path, files| surface::load(path, files, stl::read),
         _ => return None,
     };

@@ -1,4 +1,4 @@
-use crate::{material::Material, texture::Maps, warnings::Warnings};
+use crate::{material::Material, splats::Splats, texture::Maps, warnings::Warnings};
 use bevy_mikktspace::TangentSpace;
 use glam::{Mat4, Vec2, Vec3};
 use peelnet_core::files::printable;
@@ -23,6 +23,8 @@ pub struct Mesh {
     pub triangles: Vec<[u32; 3]>,
     /// Runs of triangles that share a material; together they cover all triangles in order.
     pub parts: Vec<Part>,
+    /// Splats instead of a surface: triangle i is `[i, i, i]`, around which splat i is drawn.
+    pub splats: Option<Splats>,
 }
 
 /// A run of triangles of one material.
@@ -49,8 +51,21 @@ impl Mesh {
         }
     }
 
-    /// Appends a mesh of one part. Where that has maps and no UVs, its maps are dropped, with a warning behind the name of the file.
+    /// Appends a mesh of one part. Where that has maps and no UVs, its maps are dropped, with a warning behind the name of the file. A mesh is of
+    /// triangles or of splats: one of the other kind is left out, with a warning.
     pub(crate) fn append(&mut self, mut other: Self, file: &str, warnings: &mut Warnings) {
+        if !self.parts.is_empty() && self.splats.is_some() != other.splats.is_some() {
+            let [what, beside] = match other.splats {
+                Some(_) => ["splats", "triangles"],
+                None => ["triangles", "splats"],
+            };
+            let before = format!("{file}{what} beside {beside} (");
+            for part in &other.parts {
+                let name = format!("'{}'", printable(&part.name));
+                warnings.about(&before, &name, "); give them a file of their own");
+            }
+            return;
+        }
         for part in &mut other.parts {
             if other.uvs.is_empty() && part.material.maps.has_any() {
                 part.material.maps = Maps::NONE;
@@ -69,6 +84,9 @@ impl Mesh {
         let moved = |t: [u32; 3]| t.map(|i| i + base as u32);
         self.positions.extend(other.positions);
         self.normals.extend(other.normals);
+        if let Some((own, other)) = self.splats.as_mut().zip(other.splats) {
+            own.append(other);
+        }
         self.triangles
             .extend(other.triangles.into_iter().map(moved));
         append_some(&mut self.colors, other.colors, [base, vertices], [1.0; 4]);
@@ -84,8 +102,11 @@ impl Mesh {
         }));
     }
 
-    /// The same triangles, each with vertices and a normal of its own.
+    /// The same triangles, each with vertices and a normal of its own. Splats stay as they are.
     pub(crate) fn flat(self) -> Self {
+        if self.splats.is_some() {
+            return self;
+        }
         let corners = || self.triangles.as_flattened().iter().map(|&i| i as usize);
         let normal = |t: &[u32; 3]| area_of(&self.positions, *t).normalize_or(Vec3::Z);
         let numbers = 0..self.triangles.len() as u32;
@@ -116,6 +137,9 @@ impl Mesh {
         if !self.colors.is_empty() {
             self.colors = used.iter().map(|&i| self.colors[i]).collect();
         }
+        if let Some(splats) = &mut self.splats {
+            splats.keep(&used);
+        }
     }
 
     /// Tangents of a run of triangles, for normal maps: direction of u, and 1 or −1 where v runs against or along normal × tangent,
@@ -134,8 +158,11 @@ impl Mesh {
         Some(geometry.found)
     }
 
-    /// The same mesh with vertex colours by height, from the lowest vertex to the highest.
+    /// The same mesh with vertex colours by height, from the lowest vertex to the highest. Splats, which have colours, stay as they are.
     pub(crate) fn colored_by_height(&self, [low, high]: [[f32; 4]; 2]) -> Self {
+        if self.splats.is_some() {
+            return self.clone();
+        }
         let (bottom, top) = self.bounds().unwrap_or_default();
         let of = |p: &Vec3| {
             let t = ((p.y - bottom.y) / (top.y - bottom.y).max(1e-12)).clamp(0.0, 1.0);
@@ -148,8 +175,12 @@ impl Mesh {
     }
 
     /// The same surface with every triangle cut into four at the middles of its edges. Normals are interpolated, so shading stays as it was.
+    /// Splats, which have no edges, stay as they are.
     pub fn subdivided(&self) -> Self {
         let mut mesh = self.clone();
+        if mesh.splats.is_some() {
+            return mesh;
+        }
         mesh.triangles = Vec::with_capacity(4 * self.triangles.len());
         mesh.uvs.clear();
         let mut middles: HashMap<[u32; 2], u32> = HashMap::new();
@@ -188,16 +219,42 @@ impl Mesh {
         mesh
     }
 
-    /// The box around all vertices that triangles use; `None` without any.
+    /// The box around all vertices that triangles use, or around all splats as far as they reach; `None` without any.
     pub fn bounds(&self) -> Option<(Vec3, Vec3)> {
         self.bounds_of(0..self.triangles.len())
     }
 
     fn bounds_of(&self, triangles: Range<usize>) -> Option<(Vec3, Vec3)> {
-        let vertices = self.triangles[triangles].iter().flatten();
+        let triangles = &self.triangles[triangles];
+        let around = |(lo, hi): (Vec3, Vec3), (a, b): (Vec3, Vec3)| (lo.min(a), hi.max(b));
+        if let Some(splats) = &self.splats {
+            let boxes = triangles.iter().map(|&[i, ..]| {
+                let reach = Vec3::splat(splats.reach(i as usize));
+                let center = self.positions[i as usize];
+                (center - reach, center + reach)
+            });
+            return boxes.reduce(around);
+        }
+        let vertices = triangles.iter().flatten();
         let mut vertices = vertices.map(|&i| self.positions[i as usize]);
         let first = vertices.next()?;
         Some(vertices.fold((first, first), |(lo, hi), p| (lo.min(p), hi.max(p))))
+    }
+
+    /// The box that shows what a mesh is: of splats, which files have far away too, that between the 2nd and 98th percentile of their centres.
+    pub(crate) fn main_bounds(&self) -> Option<(Vec3, Vec3)> {
+        if self.splats.is_none() || self.positions.is_empty() {
+            return self.bounds();
+        }
+        let last = self.positions.len() - 1;
+        let mut ends = [Vec3::ZERO; 2];
+        for axis in 0..3 {
+            let mut all: Vec<f32> = self.positions.iter().map(|p| p[axis]).collect();
+            for (end, place) in ends.iter_mut().zip([last / 50, last - last / 50]) {
+                end[axis] = *all.select_nth_unstable_by(place, f32::total_cmp).1;
+            }
+        }
+        Some((ends[0], ends[1]))
     }
 
     /// From the unit cube, 0 … 1, to the box around a part, which is larger by [`BOX_MARGIN`]; `None` of a part that covers nothing.

@@ -6,6 +6,7 @@ use crate::{
 };
 use glam::{Mat4, Vec3};
 use peelnet_core::files::printable;
+use serde::Deserialize;
 use std::{path::PathBuf, sync::Arc};
 
 /// Where light comes from.
@@ -28,6 +29,17 @@ pub struct Light {
     pub intensity: f32,
 }
 
+/// The space in which colours of fragments are mixed. Images are linear light in either.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Blending {
+    /// Linear light, as glTF and engines blend: colours of splats are decoded, each, from what a display shows.
+    #[default]
+    Linear,
+    /// What a display shows (sRGB), as the networks blended that made splats: what surfaces reflect is encoded, each fragment of it.
+    Display,
+}
+
 /// A mesh in its place. Change `world_from_object` to move it, and `materials` to change its appearance; the mesh may be shared.
 #[derive(Clone, Debug)]
 pub struct Object {
@@ -41,6 +53,16 @@ pub struct Object {
     pub layer: Option<u32>,
     /// One for each part of the mesh.
     pub materials: Vec<Material>,
+}
+
+impl Blending {
+    /// That of a scene that does not say: display space where there are splats, which look as they were made in that alone.
+    pub fn of(objects: &[Object]) -> Self {
+        match objects.iter().any(|o| o.mesh.splats.is_some()) {
+            true => Self::Display,
+            false => Self::Linear,
+        }
+    }
 }
 
 impl Object {
@@ -80,6 +102,8 @@ pub struct Scene {
     pub files: Vec<PathBuf>,
     /// Background radiance, linear RGB.
     pub background: [f32; 3],
+    /// The space that colours are mixed in.
+    pub blending: Blending,
     /// Resolution of transparency as a share of the image's, above 0 and at most 1; exact methods keep the full one.
     pub transparency_scale: f32,
     /// Views, at least one.
@@ -123,6 +147,7 @@ impl Scene {
             content: String::new(),
             files: Vec::new(),
             background,
+            blending: Blending::of(&objects),
             transparency_scale: 1.0,
             views: vec![camera],
             lights: Vec::new(),

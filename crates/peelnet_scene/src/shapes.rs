@@ -1,6 +1,8 @@
-//! Generated meshes. Closed ones are watertight, face outwards, and share their vertices; quads, strands and terrain are open.
+//! Generated meshes. Closed ones are watertight, face outwards, and share their vertices; quads, strands and terrain are open, and splats have no
+//! surface.
 
 mod revolution;
+mod splats;
 mod strands;
 #[cfg(test)]
 pub(crate) mod tests;
@@ -71,6 +73,9 @@ shapes! {
         radius: f32 = 1.0, count: usize = 1000, segments: usize = 8, length: f32 = 1.0, width: f32 = 0.01, droop: f32 = 1.0,
         curl: f32 = 0.0, roots: f32 = 0.0, seed: u64 = 0,
     }
+    /// Gaussian splats as captures have them: on the surfaces of a few bumpy blobs within `radius`, and some large faint ones anywhere. `size` is the
+    /// median standard deviation along the surface, `opacity` multiplies that of each, and `degree` is that of the harmonics of its colour, 0 to 3.
+    SplatCloud "splats" { count: usize = 2000, radius: f32 = 1.0, seed: u64 = 0, degree: u8 = 0, size: f32 = 0.02, opacity: f32 = 1.0 }
     /// Land over the xz plane: ridges and valleys, open below. `height` is that of the highest place over the lowest.
     Terrain "terrain" { size: [f32; 2] = [2.0; 2], height: f32 = 0.5, seed: u64 = 0, triangles: usize = 2000 }
 }
@@ -103,6 +108,7 @@ impl Shape {
         match self {
             Self::Cuboid(_) => 12,
             Self::Quad(_) => 2,
+            Self::SplatCloud(shape) => shape.count,
             Self::Strands(shape) => shape.triangles(),
             Self::Sphere(Sphere { triangles, .. })
             | Self::Torus(Torus { triangles, .. })
@@ -124,7 +130,12 @@ impl Shape {
         if !has_uvs {
             surface.uvs.clear();
         }
-        Ok(surface.into_part(name, material.clone()))
+        // Their colours and opacities are their own.
+        let material = match surface.splats {
+            Some(_) => Material::unlit([1.0; 3], 1.0),
+            None => material.clone(),
+        };
+        Ok(surface.into_part(name, material))
     }
 }
 

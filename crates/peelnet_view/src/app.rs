@@ -24,7 +24,7 @@ use glam::Vec3;
 use peelnet_model::{Model, Recipe};
 use peelnet_render::gpu::{Gpu, wgpu};
 use peelnet_render::{FrameStatus, MethodSpec};
-use peelnet_scene::{Camera, Scene};
+use peelnet_scene::{Blending, Camera, Scene};
 use std::{path::PathBuf, time::Duration};
 
 /// How long the view rests before errors are measured, seconds.
@@ -378,7 +378,7 @@ impl App {
             show: show as u32,
             divider,
             scale,
-            pad: 0,
+            is_encoded: u32::from(stage.scene.blending == Blending::Display),
         };
         let state = (view, [self.first.frames, self.second.frames], size);
         if !drawn && mode != Mode::Layers && self.displayed == Some(state) {

@@ -16,7 +16,8 @@ pub(crate) struct View {
     pub show: u32,
     pub divider: u32,
     pub scale: f32,
-    pub pad: u32,
+    /// Whether the pictures are in display space.
+    pub is_encoded: u32,
 }
 
 /// The last pass of the viewer, for these pictures, and its target.

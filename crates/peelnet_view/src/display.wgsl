@@ -1,4 +1,4 @@
-// What the window shows of one or two pictures in linear light: encoded for a display, compared, or as a map.
+// What the window shows of one or two pictures: encoded for a display where they are in linear light, compared, or as a map.
 
 struct View {
     // See `Mode` in compare.rs.
@@ -7,7 +7,8 @@ struct View {
     divider: u32,
     // Levels of 255 at which the map ends, or layers.
     scale: f32,
-    pad: u32,
+    // Whether pictures hold what a display shows already.
+    is_encoded: u32,
 }
 
 @group(0) @binding(0) var first: texture_2d<f32>;
@@ -33,6 +34,9 @@ fn encoded(linear: f32) -> f32 {
 }
 
 fn shown(color: vec4f) -> vec3f {
+    if view.is_encoded == 1u {
+        return saturate(color.rgb);
+    }
     return vec3f(encoded(color.r), encoded(color.g), encoded(color.b));
 }
 

@@ -1,4 +1,4 @@
-// Builds the example as static files: `node scripts/example.mjs [folder]`, by default example/dist.
+// Builds the examples as static files: `node scripts/example.mjs [folder]`, by default example/dist. The splats are a page of its own, in splats/.
 
 import { copyFileSync, mkdirSync } from 'node:fs';
 import { dirname, join, resolve } from 'node:path';
@@ -9,7 +9,15 @@ const PACKAGE = dirname( dirname( fileURLToPath( import.meta.url ) ) );
 const folder = resolve( process.argv[ 2 ] ?? join( PACKAGE, 'example/dist' ) );
 
 await import( './models.mjs' );
-mkdirSync( folder, { recursive: true } );
-copyFileSync( join( PACKAGE, 'example/index.html' ), join( folder, 'index.html' ) );
-await build( { entryPoints: [ join( PACKAGE, 'example/main.js' ) ], outfile: join( folder, 'main.js' ), bundle: true, minify: true, format: 'esm', target: 'es2022', logLevel: 'warning' } );
-console.log( `Open ${ join( folder, 'index.html' ) } through a web server.` );
+
+for ( const page of [ '', 'splats' ] ) {
+
+	const from = join( PACKAGE, 'example', page );
+	const to = join( folder, page );
+
+	mkdirSync( to, { recursive: true } );
+	copyFileSync( join( from, 'index.html' ), join( to, 'index.html' ) );
+	await build( { entryPoints: [ join( from, 'main.js' ) ], outfile: join( to, 'main.js' ), bundle: true, minify: true, format: 'esm', target: 'es2022', logLevel: 'warning' } );
+	console.log( `Open ${ join( to, 'index.html' ) } through a web server.` );
+
+}

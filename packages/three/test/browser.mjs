@@ -25,6 +25,9 @@ export function chromiumPath() {
 
 }
 
+/** What a page's console says of errors; three.js reports those of shaders as warnings, too. */
+export const errorsOf = ( said ) => said.filter( ( line ) => /^error/.test( line ) || ( /^warn/.test( line ) && /shader|wgsl|pipeline|validation/i.test( line ) ) );
+
 /** Serves a folder's files on a free port of this machine. */
 export async function serve( root ) {
 

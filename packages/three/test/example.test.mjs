@@ -1,11 +1,11 @@
-// The example as it is built, in both back ends.
+// The examples as they are built, in both back ends.
 
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { mkdirSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, describe, test } from 'node:test';
-import { PACKAGE, open } from './browser.mjs';
+import { PACKAGE, errorsOf, open } from './browser.mjs';
 
 const OUT = join( PACKAGE, 'out' );
 const FOLDER = join( OUT, 'example' );
@@ -43,6 +43,18 @@ function triangle() {
 
 }
 
+// Bytes of one grey splat.
+function splat() {
+
+	const bytes = Buffer.alloc( 32 );
+
+	[ 0, 0, 0, 1, 1, 1 ].forEach( ( value, k ) => bytes.writeFloatLE( value, 4 * k ) );
+	bytes.set( [ 128, 128, 128, 255, 255, 128, 128, 128 ], 24 );
+
+	return bytes;
+
+}
+
 let browser;
 
 before( async () => {
@@ -66,7 +78,7 @@ after( () => browser?.close() );
 
 const judged = () => browser.page.waitForFunction( 'window.results !== undefined', { timeout: 120_000 } ).then( () => browser.page.evaluate( 'window.results' ) );
 
-const textOf = () => browser.page.$eval( '#message', ( element ) => element.textContent );
+const textOf = ( id = 'message' ) => browser.page.$eval( `#${ id }`, ( element ) => element.textContent );
 
 for ( const backend of [ 'webgpu', 'webgl2' ] ) {
 
@@ -147,3 +159,107 @@ for ( const backend of [ 'webgpu', 'webgl2' ] ) {
 	} );
 
 }
+
+describe( 'example of splats', () => {
+
+	const files = {
+		'one.splat': splat(),
+		'empty.splat': Buffer.alloc( 0 ),
+		'scene.ply': Buffer.from( 'ply\nformat binary_little_endian 1.0\n' ),
+		'cut.splat': splat().subarray( 0, 30 ),
+		'text.splat': Buffer.from( 'a text of thirty-two bytes, no splat'.slice( 0, 32 ) ),
+		'number.splat': Buffer.concat( [ splat(), Buffer.from( splat() ).fill( 0xff, 4, 8 ) ] ),
+		'turn.splat': Buffer.from( splat() ).fill( 128, 28, 32 )
+	};
+
+	// A file is dropped as a browser would.
+	const drop = ( name ) => browser.page.evaluate( ( fileName, bytes ) => {
+
+		const dataTransfer = new DataTransfer();
+
+		dataTransfer.items.add( new File( [ new Uint8Array( bytes ) ], fileName ) );
+		window.dispatchEvent( new DragEvent( 'drop', { dataTransfer, cancelable: true } ) );
+
+	}, name, [ ...files[ name ] ] );
+
+	// The picture as a data URL, and how far its pixels are from their mean.
+	const picture = async () => {
+
+		await browser.page.waitForFunction( 'window.results?.frames > 1', { timeout: 120_000 } );
+
+		return browser.page.evaluate( async () => {
+
+			const canvas = document.querySelector( 'canvas' );
+
+			// A canvas can be read in the task that draws it.
+			window.results.draw();
+
+			const url = canvas.toDataURL();
+			const image = new Image();
+			const context = Object.assign( document.createElement( 'canvas' ), { width: canvas.width, height: canvas.height } ).getContext( '2d' );
+
+			image.src = url;
+			await image.decode();
+			context.drawImage( image, 0, 0 );
+
+			const values = context.getImageData( 0, 0, canvas.width, canvas.height ).data.filter( ( _, i ) => i % 4 !== 3 );
+			const mean = values.reduce( ( sum, value ) => sum + value, 0 ) / values.length;
+
+			return { url, deviation: Math.sqrt( values.reduce( ( sum, value ) => sum + ( value - mean ) ** 2, 0 ) / values.length ) };
+
+		} );
+
+	};
+
+	for ( const backend of [ 'webgpu', 'webgl2' ] ) {
+
+		test( `${ backend }: shows splats and glass, and a dropped file in their place`, async () => {
+
+			browser.said.length = 0;
+			await browser.page.goto( `${ browser.server.url }/splats/index.html?backend=${ backend }` );
+
+			const { url, deviation } = await picture();
+
+			writeFileSync( join( OUT, `splats-${ backend }.png` ), Buffer.from( url.split( ',' )[ 1 ], 'base64' ) );
+			assert.ok( deviation > 20, `an empty picture: ${ deviation }` );
+			assert.equal( await textOf( 'message' ), '' );
+			assert.match( await textOf( 'count' ), /^3200 splats/ );
+
+			await drop( 'one.splat' );
+			await browser.page.waitForFunction( 'window.results.count === 1' );
+			assert.notEqual( ( await picture() ).url, url );
+			assert.match( await textOf( 'count' ), /^1 splat\./ );
+			assert.deepEqual( errorsOf( browser.said ), [] );
+
+		} );
+
+		test( `${ backend }: a bad file is named with what to do, and the splats stay`, async () => {
+
+			const expected = {
+				'empty.splat': /^empty\.splat: The file is empty\. Export the scene as \.splat/,
+				'scene.ply': /^scene\.ply: The file is a PLY\. Export the scene as \.splat/,
+				'cut.splat': /^cut\.splat: The file has 30 bytes, no multiple of 32: .* Export the scene as \.splat/,
+				'text.splat': /^text\.splat: Splat 0 has no valid centre: .* Export the scene as \.splat/,
+				'number.splat': /^number\.splat: Splat 1 has no valid centre: .* Export the scene as \.splat/,
+				'turn.splat': /^turn\.splat: Splat 0 has no valid rotation: .* Export the scene as \.splat/
+			};
+
+			for ( const [ name, message ] of Object.entries( expected ) ) {
+
+				await drop( name );
+				await browser.page.waitForFunction( ( start ) => document.getElementById( 'message' ).textContent.startsWith( start ), { timeout: 20_000 }, name );
+				assert.match( await textOf( 'message' ), message );
+
+			}
+
+			assert.match( await textOf( 'count' ), /^1 splat\./ );
+
+			await drop( 'one.splat' );
+			await browser.page.waitForFunction( 'document.getElementById( "message" ).textContent === ""' );
+			assert.deepEqual( errorsOf( browser.said ), [] );
+
+		} );
+
+	}
+
+} );

@@ -25,9 +25,12 @@ impl SceneBuffers {
         world_from_object: glam::Mat4,
     ) -> Result<(), RenderError> {
         let moved = self.object(object)?;
-        let was_mirrored = Placement::from_object(moved).mirrored;
+        let was_mirrored = Placement::new(moved, 0).mirrored;
         moved.world_from_object = world_from_object;
-        let turned = Placement::from_object(moved).mirrored != was_mirrored;
+        let turned = Placement::new(moved, 0).mirrored != was_mirrored;
+        if let Some(splats) = &self.splats {
+            splats.place(&self.gpu, &self.scene, object);
+        }
         for number in 0..self.parts.len() {
             let part = &mut self.parts[number];
             if part.place.0 != object || part.run.vertices.is_empty() {
@@ -35,11 +38,11 @@ impl SceneBuffers {
             }
             let object = &self.scene.objects[object];
             let triangles = object.mesh.parts[part.place.1].triangles.clone();
-            let placement = Placement::from_object(object);
+            let placement = Placement::new(object, 0);
             let vertices: Vec<Vertex> = placement.vertices(triangles, number as u32).collect();
             let first = part.run.vertices.start as usize;
             self.gpu.write_at(&self.vertices, first, &vertices);
-            part.measure(&vertices);
+            part.measure(&vertices, object);
             // Positions and UVs are the same wherever the object stands.
             let shares_anew = turned || part.run.variant.contains(MaterialFlags::NORMAL_MAP);
             self.write_attributes(number, shares_anew);
@@ -54,7 +57,11 @@ impl SceneBuffers {
         let first = part.run.vertices.start as usize;
         let object = &self.scene.objects[part.place.0];
         let triangles = &object.mesh.parts[part.place.1].triangles;
-        let placement = Placement::from_object(object);
+        let first_splat = self
+            .splats
+            .as_ref()
+            .map_or(0, |all| all.first(part.place.0));
+        let placement = Placement::new(object, first_splat);
         let attributes = placement.attributes(triangles, part.run.variant);
         if shares_anew {
             let numbers = placement.shared(triangles, &attributes, first);

@@ -8,6 +8,24 @@ use crate::gpu::{
     wgpu,
 };
 
+/// What a pass draws onto besides its colours.
+#[derive(Debug)]
+pub struct Onto {
+    /// Samples of a pixel.
+    pub samples: u32,
+    /// The depth that it writes.
+    pub depth: Option<wgpu::DepthStencilState>,
+}
+
+impl From<u32> for Onto {
+    fn from(samples: u32) -> Self {
+        Self {
+            samples,
+            depth: None,
+        }
+    }
+}
+
 #[derive(Debug)]
 pub struct FullscreenPass {
     label: String,
@@ -25,8 +43,9 @@ impl FullscreenPass {
         extra: &[(&str, &str)],
         entries: &[(&str, Bind<'_>)],
         targets: &[Option<wgpu::ColorTargetState>],
-        samples: u32,
+        onto: impl Into<Onto>,
     ) -> Result<Self, RenderError> {
+        let Onto { samples, depth } = onto.into();
         let linked = crate::shaders::link(shader, features, extra)?;
         let triangle = crate::shaders::link("helpers::screen", &[], &[])?;
         let entries = numbered(&linked, 0, entries)?;
@@ -38,7 +57,7 @@ impl FullscreenPass {
             groups: &[Some(&group)],
             buffers: &[],
             targets,
-            depth: None,
+            depth,
             samples,
             culled: None,
         });
@@ -56,7 +75,18 @@ impl FullscreenPass {
         colors: &[Option<wgpu::RenderPassColorAttachment<'_>>],
         rectangle: Option<[u32; 4]>,
     ) {
-        let mut pass = recorder.render(&self.label, colors, None);
+        self.draw_depth(recorder, colors, None, rectangle);
+    }
+
+    /// The same with a depth that it writes.
+    pub fn draw_depth(
+        &self,
+        recorder: &mut Recorder<'_>,
+        colors: &[Option<wgpu::RenderPassColorAttachment<'_>>],
+        depth: Option<wgpu::RenderPassDepthStencilAttachment<'_>>,
+        rectangle: Option<[u32; 4]>,
+    ) {
+        let mut pass = recorder.render(&self.label, colors, depth);
         if let Some([x, y, width, height]) = rectangle {
             pass.set_scissor_rect(x, y, width, height);
         }

@@ -25,6 +25,7 @@ mod sample_point;
 pub mod sbuffer;
 mod scene;
 pub mod sort;
+mod splats;
 mod uniforms;
 mod upload;
 

@@ -26,7 +26,8 @@ impl Needs {
     /// The features of a pass's shader for a material that needs these.
     pub(crate) fn features(self, material: &[&'static str]) -> Vec<&'static str> {
         // Holes are where opacity is low.
-        let needs = match material.contains(&"cutout") {
+        let has_holes = material.contains(&"cutout") || material.contains(&"splat");
+        let needs = match has_holes {
             true => self | Self::OPACITY,
             false => self,
         };
@@ -34,7 +35,7 @@ impl Needs {
         let mapped = material.contains(&"clear_map")
             || material.contains(&"transmission") && material.contains(&"color_map");
         let serves = |feature: &&str| match *feature {
-            "cutout" | "clear_map" | "vertex_colors" | "emission" | "transmission" => {
+            "cutout" | "clear_map" | "vertex_colors" | "emission" | "transmission" | "splat" => {
                 needs.contains(Self::OPACITY)
             }
             "mapped" | "color_map" => {
@@ -45,7 +46,11 @@ impl Needs {
         let of_material = material.iter().copied().filter(serves);
         let numbered = needs.contains(Self::TRIANGLE).then_some("numbered");
         let named = needs.contains(Self::MATERIAL).then_some("material");
-        of_material.chain(numbered).chain(named).collect()
+        let is_seen = material.contains(&"splat") && needs.contains(Self::COLOR);
+        let colored = is_seen.then_some("splat_color");
+        (of_material.chain(numbered).chain(named))
+            .chain(colored)
+            .collect()
     }
 }
 

@@ -148,6 +148,9 @@ fn pipeline(
         "mapped",
         "normal_map",
         "vertex_colors",
+        "splat",
+        "splat_color",
+        "display",
     ];
     let mut of_vertex = features.to_vec();
     of_vertex.retain(|f| carried.contains(f));

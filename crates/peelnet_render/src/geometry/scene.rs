@@ -4,8 +4,9 @@ use crate::geometry::{
     FrameTargets, GeometryPipelines, PixelSample, RenderError, SamplePoint,
     frame::{OpaqueDepth, attachment, clear_color, depth_attachment},
     maps::MapSets,
+    splats::SplatBuffers,
     uniforms::{CameraUniform, MaterialData, unit_from_depth},
-    upload::{ATTRIBUTES, DrawRun, Placement, Vertex, extend, floats, push_run},
+    upload::{ATTRIBUTES, Attributes, DrawRun, Placement, Vertex, extend, floats, push_run},
 };
 use crate::gpu::{
     Gpu,
@@ -14,8 +15,8 @@ use crate::gpu::{
     wgpu,
 };
 use bytemuck::Zeroable;
-use peelnet_core::absorbance::DepthWarp;
-use peelnet_scene::{Camera, EFFECTS, MaterialFlags, Scene};
+use peelnet_core::{absorbance::DepthWarp, srgb};
+use peelnet_scene::{Blending, Camera, EFFECTS, MaterialFlags, Object, Scene};
 use std::collections::{BTreeSet, HashSet};
 
 /// The order in which the transparent parts of objects are submitted to the GPU. Depths, numbers of triangles and everything that is
@@ -59,7 +60,9 @@ pub struct SceneBuffers {
     /// For every vertex the first one that is the same.
     pub(crate) shared: wgpu::Buffer,
     /// In the order of [`ATTRIBUTES`], for every vertex; each where any material reads it.
-    pub(crate) attributes: [Option<wgpu::Buffer>; 4],
+    pub(crate) attributes: [Option<wgpu::Buffer>; ATTRIBUTES.len()],
+    /// Where there are any.
+    pub(crate) splats: Option<SplatBuffers>,
     pub(crate) maps: MapSets,
     pub(crate) materials: wgpu::Buffer,
     /// Where any material is lit.
@@ -104,14 +107,16 @@ impl SceneBuffers {
         let hint = "split the scene or simplify its meshes";
         gpu.check_limit(what, needed, limit, "bytes", hint)?;
         let lights = scene.light_flags();
-        let mut attributes: [Vec<f32>; 4] = Default::default();
+        let mut attributes: Attributes = Default::default();
+        let splats = SplatBuffers::new(gpu, scene)?;
         let mut maps = MapSets::default();
         let mut vertices = Vec::with_capacity(triangles * 3);
         let mut shared = Vec::with_capacity(triangles * 3);
         let mut materials = Vec::new();
         let mut parts = Vec::new();
         for (number, object) in scene.objects.iter().enumerate() {
-            let placement = Placement::from_object(object);
+            let first_splat = splats.as_ref().map_or(0, |all| all.first(number));
+            let placement = Placement::new(object, first_splat);
             let all = object.mesh.parts.iter().zip(&object.materials);
             for (part_number, (part, material)) in all.enumerate() {
                 let index = materials.len() as u32;
@@ -136,7 +141,7 @@ impl SceneBuffers {
                     bounds: None,
                     centroids: Vec::new(),
                 };
-                buffers.measure(&vertices[begin..]);
+                buffers.measure(&vertices[begin..], object);
                 parts.push(buffers);
             }
         }
@@ -153,6 +158,7 @@ impl SceneBuffers {
         let mut buffers = Self {
             gpu: gpu.clone(),
             attributes,
+            splats,
             maps,
             vertices: gpu.upload("vertices", &vertices, wgpu::BufferUsages::VERTEX),
             vertex_count: vertices.len(),
@@ -225,6 +231,9 @@ impl SceneBuffers {
         let mapped = |flag: MaterialFlags| drawn().any(|p| p.run.variant.contains(flag));
         let mut names = vec!["camera", "materials"];
         names.extend(self.lights.is_some().then_some("lights"));
+        if self.splats.is_some() {
+            names.extend(["splats", "harmonics"]);
+        }
         names.extend(self.has_opaque().then_some("opaque depth"));
         names.extend(drawn().next().map(|_| "sampler"));
         let maps = (EFFECTS.iter()).filter(|e| MaterialFlags::MAPS.contains(&e.flag));
@@ -253,6 +262,12 @@ impl SceneBuffers {
         ];
         // Where nothing is lit no light is bound.
         entries.extend(self.lights.as_ref().map(|lights| (2, Bind::Read(lights))));
+        if let Some(splats) = &self.splats {
+            entries.extend([
+                (4, Bind::Read(&splats.splats)),
+                (5, Bind::Read(&splats.harmonics)),
+            ]);
+        }
         let opaque = self.gpu.bind("opaque scene", stages, &entries);
         entries.extend(depth.map(|depth| (3, Bind::Texture(&depth.view))));
         [opaque, self.gpu.bind("scene", stages, &entries)]
@@ -322,7 +337,8 @@ impl SceneBuffers {
         let (mut low, mut high) = (size, glam::Vec2::ZERO);
         for corner in self.boxes().flat_map(corners_of) {
             let place = clip * corner.extend(1.0);
-            if place.w <= 0.0 {
+            // Splats are blurred on the screen, beyond their boxes.
+            if place.w <= 0.0 || self.splats.is_some() {
                 (low, high) = (glam::Vec2::ZERO, size);
                 break;
             }
@@ -414,7 +430,11 @@ impl SceneBuffers {
         target: Option<&wgpu::TextureView>,
         clear: bool,
     ) {
-        let [r, g, b] = self.scene.background.map(f64::from);
+        let background = match self.scene.blending {
+            Blending::Linear => self.scene.background,
+            Blending::Display => self.scene.background.map(srgb::encode),
+        };
+        let [r, g, b] = background.map(f64::from);
         let begin = [r, g, b, 1.0];
         let (over, pipelines) = (frame.output.is_over(), frame.opaque.as_ref());
         if over && !clear && pipelines.is_none() {
@@ -450,10 +470,21 @@ fn clip_from_world(camera: &Camera, frame: &FrameTargets, point: SamplePoint) ->
 }
 
 impl PartBuffers {
-    pub(crate) fn measure(&mut self, vertices: &[Vertex]) {
+    pub(crate) fn measure(&mut self, vertices: &[Vertex], object: &Object) {
         let points = || vertices.iter().map(|v| glam::Vec3::from_array(v.position));
         let [lo, hi] = [glam::Vec3::min, glam::Vec3::max].map(|pick| points().reduce(pick));
         self.bounds = lo.zip(hi).map(|(lo, hi)| [lo, hi]);
+        if object.mesh.splats.is_some() {
+            // They reach beyond their centres, which the box of the mesh knows.
+            let box_of = object.mesh.box_of(self.place.1);
+            let corners = box_of.into_iter().flat_map(|from_unit| {
+                let unit = [glam::Vec3::ZERO, glam::Vec3::ONE];
+                corners_of(unit).map(move |p| from_unit.transform_point3(p))
+            });
+            let corners = corners.map(|p| object.world_from_object.transform_point3(p));
+            let boxes = corners.map(|p| [p, p]);
+            self.bounds = boxes.reduce(|[lo, hi], [p, _]| [lo.min(p), hi.max(p)]);
+        }
         let points: Vec<_> = points().collect();
         let (triangles, _) = points.as_chunks::<3>();
         let middle = |triangle: &[glam::Vec3; 3]| triangle.iter().sum::<glam::Vec3>() / 3.0;

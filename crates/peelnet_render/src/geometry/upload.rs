@@ -20,7 +20,11 @@ pub(crate) const ATTRIBUTES: &[(&str, [wgpu::VertexAttribute; 1], &str)] = &[
     ("tangent", vertex_attr_array![3 => Float32x4], "normal_map"),
     ("color", vertex_attr_array![4 => Float32x4], "vertex_colors"),
     ("normal", vertex_attr_array![5 => Float32x3], "lit"),
+    ("splat", vertex_attr_array![6 => Uint32], "splat"),
 ];
+
+/// What a run of vertices has of each of [`ATTRIBUTES`].
+pub(crate) type Attributes = [Vec<f32>; 5];
 
 /// How many vertices that stand for one of the mesh are compared: of more, some are drawn as vertices of their own.
 const MOST_COMPARED: usize = 8;
@@ -52,16 +56,19 @@ pub(crate) fn push_run(runs: &mut Vec<DrawRun>, run: DrawRun) {
 pub(crate) struct Placement<'a> {
     object: &'a Object,
     normal_matrix: glam::Mat3,
+    /// Number of its first splat in the scene, where it is one of splats.
+    first_splat: u32,
     /// Whether it is turned inside out.
     pub mirrored: bool,
 }
 
 impl<'a> Placement<'a> {
-    pub fn from_object(object: &'a Object) -> Self {
+    pub fn new(object: &'a Object, first_splat: u32) -> Self {
         let linear = glam::Mat3::from_mat4(object.world_from_object);
         Self {
             object,
             normal_matrix: linear.inverse().transpose(),
+            first_splat,
             mirrored: linear.determinant() < 0.0,
         }
     }
@@ -88,11 +95,11 @@ impl<'a> Placement<'a> {
     }
 
     /// What a variant reads of these vertices, in the order of [`ATTRIBUTES`]; empty where it reads nothing.
-    pub fn attributes(&self, triangles: &Range<usize>, variant: MaterialFlags) -> [Vec<f32>; 4] {
+    pub fn attributes(&self, triangles: &Range<usize>, variant: MaterialFlags) -> Attributes {
         let mesh = &self.object.mesh;
         let order = self.order();
-        let mut all: [Vec<f32>; 4] = Default::default();
-        let [uvs, tangents, colors, normals] = &mut all;
+        let mut all: Attributes = Default::default();
+        let [uvs, tangents, colors, normals, splats] = &mut all;
         if variant.contains(MaterialFlags::MAPPED) && !mesh.uvs.is_empty() {
             let of = mesh.uvs[triangles.clone()].iter();
             uvs.extend(of.flat_map(|t| order.map(|k| t[k].to_array())).flatten());
@@ -119,6 +126,11 @@ impl<'a> Placement<'a> {
             let of = self.indices(triangles.clone());
             normals.extend(of.flat_map(|i| turned(i).to_array()));
         }
+        if variant.contains(MaterialFlags::SPLAT) {
+            let numbers = self.indices(triangles.clone());
+            // The bits of whole numbers, as all others are floats.
+            splats.extend(numbers.map(|i| f32::from_bits(self.first_splat + i as u32)));
+        }
         all
     }
 
@@ -129,9 +141,13 @@ impl<'a> Placement<'a> {
     pub fn shared(
         &self,
         triangles: &Range<usize>,
-        attributes: &[Vec<f32>; 4],
+        attributes: &Attributes,
         begin: usize,
     ) -> Vec<u32> {
+        if self.object.mesh.splats.is_some() {
+            // Which of its triangle's corners it is follows from a vertex's number.
+            return (begin as u32..).take(3 * triangles.len()).collect();
+        }
         let same = |a: usize, b: usize| {
             attributes.iter().enumerate().take(2).all(|(k, all)| {
                 let bits = |i: usize| {
@@ -168,7 +184,7 @@ pub(crate) fn floats(attribute: usize) -> usize {
 }
 
 /// Adds the attributes of a part whose first vertex is `first`, behind zeros where nothing reads a vertex's.
-pub(crate) fn extend(all: &mut [Vec<f32>; 4], first: usize, part: [Vec<f32>; 4]) {
+pub(crate) fn extend(all: &mut Attributes, first: usize, part: Attributes) {
     for (i, (all, part)) in all.iter_mut().zip(part).enumerate() {
         if !part.is_empty() {
             all.resize(first * floats(i), 0.0);
@@ -197,10 +213,10 @@ mod tests {
         let points = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]];
         let points = points.map(|[x, y]| glam::Vec3::new(x, y, 0.0));
         let mut object = object(points.to_vec(), vec![[0, 1, 2], [2, 1, 3]]);
-        let shared = |object: &Object, attributes: &[Vec<f32>; 4]| {
-            Placement::from_object(object).shared(&(0..2), attributes, 30)
+        let shared = |object: &Object, attributes: &Attributes| {
+            Placement::new(object, 0).shared(&(0..2), attributes, 30)
         };
-        let mut attributes: [Vec<f32>; 4] = Default::default();
+        let mut attributes: Attributes = Default::default();
         assert_eq!(shared(&object, &attributes), [30, 31, 32, 32, 31, 35]);
         // UVs of the corners in turn: at a seam vertex 2 has others in the second triangle.
         attributes[0] = [0.0, 1.0, 2.0, 2.5, 1.0, 3.0].map(|u| [u, 0.0]).concat();
@@ -221,7 +237,7 @@ mod tests {
     #[test]
     fn vertices_of_many_seams_stay_themselves() {
         let object = object(vec![glam::Vec3::ZERO; 3], vec![[0, 1, 2]; 60]);
-        let mut attributes: [Vec<f32>; 4] = Default::default();
+        let mut attributes: Attributes = Default::default();
         let uv = |corner: usize| {
             [
                 (corner / 3 % 30 * usize::from(corner.is_multiple_of(3))) as f32,
@@ -229,7 +245,7 @@ mod tests {
             ]
         };
         attributes[0] = (0..180).flat_map(uv).collect();
-        let numbers = Placement::from_object(&object).shared(&(0..60), &attributes, 0);
+        let numbers = Placement::new(&object, 0).shared(&(0..60), &attributes, 0);
         for (corner, &number) in numbers.iter().enumerate() {
             let number = number as usize;
             assert_eq!((number % 3, uv(number)), (corner % 3, uv(corner)));

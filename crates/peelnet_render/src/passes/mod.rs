@@ -12,8 +12,9 @@ pub mod views;
 
 use crate::RenderError;
 use crate::geometry::{
-    Blend, BoxPass, GeometryPass, Needs, Order, Sorted, frame::unwritten_texture,
-    fullscreen::FullscreenPass,
+    Blend, BoxPass, GeometryPass, Needs, Order, Sorted,
+    frame::{depth_state, unwritten_texture},
+    fullscreen::{FullscreenPass, Onto},
 };
 use crate::gpu::{Gpu, Kernel, bind::Bind, wgpu};
 use crate::methods::{MethodSpec, Precision};
@@ -116,6 +117,10 @@ impl Target {
 #[derive(Clone, Debug)]
 enum Resource {
     Target(Target),
+    /// The texture of a target that is read no more, for another of its format.
+    Again(Handle, Target),
+    /// Depth that passes over surfaces compare with.
+    Depth,
     /// Bytes of each pixel, and of the frame besides; whether they are zero at the start of every frame.
     Storage {
         name: &'static str,
@@ -154,6 +159,7 @@ pub(crate) struct Pass {
     parameters: Option<String>,
     reads: Vec<Handle>,
     writes: Vec<Handle>,
+    depth: Option<Handle>,
     /// As [`Target::every`], of what it draws.
     every: u32,
     /// Draws it in the first frame and where the camera jumped only: what it writes stays for the frames that follow.
@@ -186,6 +192,12 @@ impl Pass {
 
     pub fn writes(&mut self, all: impl IntoIterator<Item = Handle>) -> &mut Self {
         self.writes.extend(all);
+        self
+    }
+
+    /// A depth that a pass over pixels writes, and before which the surfaces of others must lie: the rest is never shaded.
+    pub fn depth(&mut self, depth: Option<Handle>) -> &mut Self {
+        self.depth = depth;
         self
     }
 
@@ -269,6 +281,16 @@ impl<'a> Passes<'a> {
         all.into_iter().map(|target| self.target(target)).collect()
     }
 
+    /// A target in the texture of another, which nothing reads any more once this one is written.
+    pub fn again(&mut self, other: Handle, target: Target) -> Handle {
+        self.resource(Resource::Again(other, target))
+    }
+
+    /// A depth of 32 bits for [`Pass::depth`].
+    pub fn depth(&mut self) -> Handle {
+        self.resource(Resource::Depth)
+    }
+
     /// Targets as an exported text's description has them.
     pub fn described<'t>(
         &mut self,
@@ -320,6 +342,7 @@ impl<'a> Passes<'a> {
             parameters: None,
             reads: Vec::new(),
             writes: Vec::new(),
+            depth: None,
             every: 1,
             after_cuts: false,
         });
@@ -364,7 +387,7 @@ impl<'a> Passes<'a> {
     fn find(&self, name: &str) -> Option<(Handle, &Target)> {
         let all = self.resources.iter().enumerate();
         let mut targets = all.filter_map(|(k, resource)| match resource {
-            Resource::Target(target) => Some((Handle(k), target)),
+            Resource::Target(target) | Resource::Again(_, target) => Some((Handle(k), target)),
             _ => None,
         });
         targets.find(|(_, target)| target.name == name)
@@ -406,7 +429,9 @@ impl<'a> Passes<'a> {
     fn sample_bytes(&self, pass: &Pass) -> u32 {
         let written = pass.writes.iter().map(|w| &self.resources[w.0]);
         let bytes = written.filter_map(|resource| match resource {
-            Resource::Target(target) => target.format().target_pixel_byte_cost(),
+            Resource::Target(target) | Resource::Again(_, target) => {
+                target.format().target_pixel_byte_cost()
+            }
             _ => None,
         });
         bytes.sum()
@@ -421,10 +446,10 @@ impl<'a> Passes<'a> {
             self.show_sums();
         }
         let mut sizes = Sizes::default();
-        let resources = self.resources.iter();
-        let resources: Vec<_> = resources
-            .map(|resource| resource.allocate(b, &mut sizes))
-            .collect::<Result<_, _>>()?;
+        let mut resources: Vec<Allocated> = Vec::with_capacity(self.resources.len());
+        for resource in &self.resources {
+            resources.push(resource.allocate(b, &mut sizes, &resources)?);
+        }
         let passes = self.passes.iter();
         let passes: Vec<PlannedPass> = passes
             .map(|pass| self.build_pass(b, pass, &resources))
@@ -468,7 +493,10 @@ impl<'a> Passes<'a> {
             .any(|read| self.resources[read.0].is_small());
         let sampler = sampler.then(|| bilinear(gpu));
         let mut entries: Vec<(&str, Bind<'_>)> = match pass.draws {
-            Draws::Pixels => vec![("background", Bind::Texture(&b.frame.background))],
+            Draws::Pixels => vec![
+                ("background", Bind::Texture(&b.frame.background)),
+                ("camera", Bind::Uniform(&b.scene.camera)),
+            ],
             Draws::Threads(_) | Draws::Surfaces | Draws::Boxes => Vec::new(),
         };
         entries.extend(size.iter().map(|size| ("frame", Bind::Uniform(size))));
@@ -488,7 +516,10 @@ impl<'a> Passes<'a> {
         for written in &pass.writes {
             let resource = &self.resources[written.0];
             match (resource, &resources[written.0]) {
-                (Resource::Target(target), Allocated::Texture(view)) => {
+                (
+                    Resource::Target(target) | Resource::Again(_, target),
+                    Allocated::Texture(view),
+                ) => {
                     colors.push(Some((view.clone(), target.blend.start())));
                     states.push(Some(target.state()));
                 }
@@ -510,15 +541,29 @@ impl<'a> Passes<'a> {
             "bytes a sample",
             "choose a method that keeps less of a pixel",
         )?;
+        let depth = pass.depth.and_then(|depth| match &resources[depth.0] {
+            Allocated::Texture(view) => Some(view.clone()),
+            _ => None,
+        });
+        let state = depth.as_ref().map(|view| wgpu::DepthStencilState {
+            depth_write_enabled: Some(pass.draws == Draws::Pixels),
+            ..depth_state(view.texture().format())
+        });
         let work = match pass.draws {
             Draws::Threads(threads) => {
                 let kernel = Kernel::link(gpu, shader, &features, &modules, &entries)?;
                 Work::Threads(kernel, u32::try_from(threads).unwrap_or(u32::MAX))
             }
             Draws::Pixels => {
-                let pass = FullscreenPass::new(
-                    gpu, shader, &features, &modules, &entries, &states, samples,
-                );
+                let onto = Onto {
+                    samples,
+                    depth: state.map(|state| wgpu::DepthStencilState {
+                        depth_compare: Some(wgpu::CompareFunction::Always),
+                        ..state
+                    }),
+                };
+                let pass =
+                    FullscreenPass::new(gpu, shader, &features, &modules, &entries, &states, onto);
                 Work::Pixels(pass?)
             }
             Draws::Surfaces | Draws::Boxes => {
@@ -530,6 +575,7 @@ impl<'a> Passes<'a> {
                     extra: &modules,
                     entries: &entries,
                     targets: &states,
+                    depth: state,
                     samples,
                     ..GeometryPass::NONE
                 };
@@ -543,6 +589,7 @@ impl<'a> Passes<'a> {
         Ok(PlannedPass {
             label: pass.label.clone(),
             colors,
+            depth,
             every: pass.every,
             after_cuts: pass.after_cuts,
             work,
@@ -581,7 +628,9 @@ struct Sizes {
 impl Resource {
     const fn name(&self) -> &'static str {
         match self {
+            Self::Depth => "depth",
             Self::Target(Target { name, .. })
+            | Self::Again(_, Target { name, .. })
             | Self::Storage { name, .. }
             | Self::Given(name, _) => name,
         }
@@ -592,9 +641,16 @@ impl Resource {
         matches!(self, Self::Target(target) if target.every > 1)
     }
 
-    fn allocate(&self, b: &Build<'_>, sizes: &mut Sizes) -> Result<Allocated, RenderError> {
+    /// Allocates it, behind those `before`.
+    fn allocate(
+        &self,
+        b: &Build<'_>,
+        sizes: &mut Sizes,
+        before: &[Allocated],
+    ) -> Result<Allocated, RenderError> {
         let gpu = &b.scene.gpu;
         Ok(match self {
+            Self::Again(other, _) => before[other.0].clone(),
             Self::Target(target) => {
                 if target.full {
                     let (feature, hint) = (wgpu::Features::FLOAT32_BLENDABLE, "use targets=f16");
@@ -609,6 +665,14 @@ impl Resource {
                     sizes.frame += u64::from(size[0]) * u64::from(size[1]) * u64::from(bytes);
                 }
                 Allocated::Texture(gpu.texture(target.name, format, size, 1, none)?)
+            }
+            Self::Depth => {
+                let (format, none) = (
+                    wgpu::TextureFormat::Depth32Float,
+                    wgpu::TextureUsages::empty(),
+                );
+                sizes.pixel += format.block_copy_size(None).unwrap_or(4);
+                Allocated::Texture(gpu.texture("depth", format, b.frame.size, 1, none)?)
             }
             Self::Storage {
                 name,

@@ -4,7 +4,7 @@ use super::compositor::{Compositor, DrawContext, FrameStats};
 use crate::RenderError;
 use crate::geometry::{
     BoxPass, GeometryPipelines, Sorted,
-    frame::{clear_color, unwritten_attachment},
+    frame::{clear_color, depth_attachment, unwritten_attachment},
     fullscreen::FullscreenPass,
 };
 use crate::gpu::{Kernel, wgpu};
@@ -28,6 +28,8 @@ pub(super) struct PlannedPass {
     pub label: String,
     /// What it writes with what that is cleared to; `None` for the output.
     pub colors: Vec<Option<(wgpu::TextureView, [f64; 4])>>,
+    /// The depth that it writes, where it draws pixels, or that its surfaces must lie before.
+    pub depth: Option<wgpu::TextureView>,
     /// It draws one pixel in so many, both ways.
     pub every: u32,
     /// Whether it is drawn in the first frame and where the camera jumped only.
@@ -87,6 +89,15 @@ impl PlannedPass {
         });
         colors.collect()
     }
+
+    fn depth_attachment(&self) -> Option<wgpu::RenderPassDepthStencilAttachment<'_>> {
+        let load = match self.work {
+            Work::Pixels(_) => wgpu::LoadOp::Clear(1.0),
+            _ => wgpu::LoadOp::Load,
+        };
+        let attached = |view| depth_attachment(view, load, wgpu::StoreOp::Store);
+        self.depth.as_ref().map(attached)
+    }
 }
 
 impl Planned {
@@ -108,7 +119,7 @@ impl Planned {
         if let Work::Boxes(boxes) = &p.work {
             boxes.update(cx.recorder, cx.scene);
         }
-        let mut pass = cx.recorder.render(&p.label, &colors, None);
+        let mut pass = (cx.recorder).render(&p.label, &colors, p.depth_attachment());
         if p.every > 1 {
             let [width, height] = cx.frame.size.map(|n| n as f32 / p.every as f32);
             pass.set_viewport(0.0, 0.0, width, height, 0.0, 1.0);
@@ -143,7 +154,7 @@ impl Compositor for Planned {
                 Work::Pixels(resolve) if p.colors.contains(&None) => cx.resolve(resolve),
                 Work::Pixels(pass) => {
                     let colors = p.attachments(cx);
-                    pass.draw(cx.recorder, &colors, None);
+                    pass.draw_depth(cx.recorder, &colors, p.depth_attachment(), None);
                 }
                 Work::Threads(kernel, threads) => kernel.dispatch(cx.recorder, *threads),
                 Work::Surfaces(_) | Work::Boxes(_) => self.draw_geometry(cx, p),

@@ -84,7 +84,7 @@ impl<'a> Loader<'a> {
         let file = self.beside(name);
         let Some(load) = import::loader(&file) else {
             let message = format!(
-                "{} is neither .obj, .gltf, .glb, .ply nor .stl; export the mesh as one of them",
+                "{} is neither .obj, .gltf, .glb, .ply, .stl, .splat nor .spz; export the mesh as one of them",
                 shown(&file)
             );
             return Err(self.value(field, message));

@@ -16,7 +16,8 @@ use std::{path::Path, sync::Arc};
 /// Views of a file without a camera.
 const VIEWS: u32 = 3;
 
-/// A mesh file with its own lights and cameras; where it has none, with two lights, and a camera that sees all of it from three sides.
+/// A mesh file with its own lights and cameras; where it has none, with two lights, and a camera that sees all of it from three sides. Splats have
+/// no lights, and a black background.
 pub(super) fn load(path: &Path, load: Load, mut files: Files<'_>) -> Result<Scene, SceneError> {
     let file = files.within(path, |files| load(path, files))?;
     let mut lights = file.lights;
@@ -24,7 +25,12 @@ pub(super) fn load(path: &Path, load: Load, mut files: Files<'_>) -> Result<Scen
     let materials = file.mesh.parts.iter().map(|p| p.material.clone());
     let mut materials: Vec<Material> = materials.collect();
     let mesh = displaced(Arc::new(file.mesh), &mut materials, &mut files.budget).map_err(&fail)?;
-    let bounds = sphere(&mesh).map_err(&fail)?;
+    let bounds = Extent::of(&mesh).map_err(&fail)?;
+    let up = if file.is_y_down { Vec3::NEG_Y } else { Vec3::Y };
+    let background = match mesh.splats {
+        Some(_) => [0.0; 3],
+        None => [1.0; 3],
+    };
     budget::check(lights.len() as u64, MAX_LIGHTS as u64, "lights").map_err(&fail)?;
     let mut views = Vec::new();
     for (name, camera) in file.cameras {
@@ -40,7 +46,7 @@ pub(super) fn load(path: &Path, load: Load, mut files: Files<'_>) -> Result<Scen
         }
     }
     if views.is_empty() {
-        views = fitting_camera(bounds).orbit(VIEWS);
+        views = fitting_camera(bounds, up).orbit(VIEWS);
     }
     if lights.is_empty()
         && let Some(lighting) = one_lighting(&mut materials)
@@ -73,7 +79,7 @@ pub(super) fn load(path: &Path, load: Load, mut files: Files<'_>) -> Result<Scen
         files: files.used,
         views,
         lights,
-        ..Scene::generated(&name, "its file", [1.0; 3], first, vec![object])
+        ..Scene::generated(&name, "its file", background, first, vec![object])
     })
 }
 
@@ -90,25 +96,58 @@ fn one_lighting(materials: &mut [Material]) -> Option<Lighting> {
     Some(Lighting::Pbr)
 }
 
-/// The middle and the radius of a sphere around all of a file.
-type Sphere = (Vec3, f32);
+/// A sphere around a file, and how far all of it reaches from the middle.
+#[derive(Clone, Copy)]
+struct Extent {
+    middle: Vec3,
+    radius: f32,
+    /// The radius, but of splats, some of which lie far outside of it.
+    reach: f32,
+    /// Of the near plane, in radii: splats are around the camera, too.
+    near: f32,
+}
 
-fn sphere(mesh: &Mesh) -> Result<Sphere, String> {
-    let (low, high) = mesh.bounds().unwrap_or_default();
-    let farthest = low.abs().max(high.abs()).max_element();
-    if farthest > MAX_COORDINATE {
-        return Err(format!(
-            "reaches {farthest:e} from the origin, and a scene at most {MAX_COORDINATE:e}; scale it down"
-        ));
+impl Extent {
+    fn of(mesh: &Mesh) -> Result<Self, String> {
+        let farthest = |(low, high): (Vec3, Vec3)| low.abs().max(high.abs()).max_element();
+        let all = mesh.bounds().unwrap_or_default();
+        if farthest(all) > MAX_COORDINATE {
+            let farthest = farthest(all);
+            return Err(format!(
+                "reaches {farthest:e} from the origin, and a scene at most {MAX_COORDINATE:e}; scale it down"
+            ));
+        }
+        let (low, high) = mesh.main_bounds().unwrap_or_default();
+        let middle = (low + high) / 2.0;
+        // Far from the origin a camera that is closer would be at the same place as its target.
+        let least = 1e-5 * farthest((low, high));
+        let radius = ((high - low).length() / 2.0).max(1e-6).max(least);
+        Ok(match mesh.splats {
+            None => Self {
+                middle,
+                radius,
+                reach: radius,
+                near: 0.5,
+            },
+            Some(_) => Self {
+                middle,
+                radius,
+                reach: (all.1 - middle).max(middle - all.0).length().max(radius),
+                near: 0.05,
+            },
+        })
     }
-    // Far from the origin a camera that is closer would be at the same place as its target.
-    let radius = ((high - low).length() / 2.0).max(1e-6).max(1e-5 * farthest);
-    Ok(((low + high) / 2.0, radius))
 }
 
 /// A camera of the file, whose target is as far ahead as the middle of all is, and behind its near plane: the file says in which direction
 /// it looks, and what turns about the target needs to know at what. `None` where its numbers make no sense.
-fn sound(mut camera: Camera, (middle, radius): Sphere) -> Option<Camera> {
+fn sound(mut camera: Camera, extent: Extent) -> Option<Camera> {
+    let Extent {
+        middle,
+        radius,
+        reach,
+        ..
+    } = extent;
     let direction = camera.target - camera.position;
     // Nearer than that, it would be where the camera is.
     let least = camera.near.max(1e-5 * camera.position.abs().max_element());
@@ -116,26 +155,29 @@ fn sound(mut camera: Camera, (middle, radius): Sphere) -> Option<Camera> {
     camera.target = camera.position + direction * ahead;
     if camera.far == f32::INFINITY {
         let distance = (camera.position - middle).length();
-        camera.far = distance + 4.0 * radius;
+        camera.far = distance + reach.max(4.0 * radius);
     }
     let is_sound = camera.check().is_ok() && camera.view_from_world().is_finite();
     is_sound.then_some(camera)
 }
 
-fn fitting_camera((middle, radius): Sphere) -> Camera {
-    let towards = Vec3::new(0.5, 0.35, 1.0).normalize();
+/// A camera that looks along −z, or where −y is up, with all axes turned about x, along z.
+fn fitting_camera(extent: Extent, up: Vec3) -> Camera {
+    let Extent { middle, radius, .. } = extent;
+    let towards = Vec3::new(0.5, 0.35 * up.y, up.y).normalize();
     Camera {
         position: middle + towards * radius * 2.8,
         target: middle,
-        up: Vec3::Y,
+        up,
         fov_y_degrees: 45.0,
-        near: radius * 0.5,
-        far: radius * 8.0,
+        near: radius * extent.near,
+        far: (radius * 8.0).max(2.9 * radius + 1.01 * extent.reach),
     }
 }
 
 /// Lights so bright that a white surface facing them is nearly white.
-fn default_lights((middle, radius): Sphere, lighting: Lighting) -> [Light; 2] {
+fn default_lights(extent: Extent, lighting: Lighting) -> [Light; 2] {
+    let Extent { middle, radius, .. } = extent;
     [([0.6, 0.9, 1.0], 0.8), ([-1.0, 0.1, 0.7], 0.4)].map(|(towards, share)| {
         let distance = 4.0 * radius;
         Light {

@@ -99,7 +99,7 @@ fn transform(raw: &RawObject, mesh: &Mesh) -> Result<Mat4, Fault> {
     };
     let is_length = fit.is_finite() && fit > 0.0;
     require(is_length, "fit", "must be a positive length")?;
-    let (lo, hi) = mesh.bounds().unwrap_or_default();
+    let (lo, hi) = mesh.main_bounds().unwrap_or_default();
     let longest = (hi - lo).max_element();
     if longest <= 0.0 {
         return Ok(world_from_object);

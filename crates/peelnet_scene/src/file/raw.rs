@@ -2,7 +2,7 @@
 
 use crate::{
     camera::Camera, material::RawMaterial, parameters::parameters, pattern::Pattern,
-    scatter::Scatter, shapes::Shape,
+    scatter::Scatter, scene::Blending, shapes::Shape,
 };
 use serde::{
     Deserialize, Deserializer,
@@ -19,6 +19,7 @@ parameters! {
     pub(super) struct RawScene {
         name: Option<String> = None,
         background: [f32; 3] = [0.0; 3],
+        blending: Option<Blending> = None,
         transparency_scale: f32 = 1.0,
         held_out: bool = false,
         camera: Option<Camera> = None,

@@ -1,5 +1,5 @@
-//! glTF 2.0 and GLB files: nodes, instances, materials with their textures, vertex colours, point and directional lights, and cameras. What
-//! a file uses and is not drawn is reported in a warning, never dropped silently.
+//! glTF 2.0 and GLB files: nodes, instances, materials with their textures, vertex colours, Gaussian splats, point and directional lights, and
+//! cameras. What a file uses and is not drawn is reported in a warning, never dropped silently.
 
 mod buffers;
 mod checks;
@@ -7,6 +7,7 @@ mod materials;
 mod nodes;
 mod primitives;
 mod repair;
+mod splats;
 
 use super::Imported;
 use crate::{
@@ -17,7 +18,7 @@ use gltf::json::{Root, extensions::ENABLED_EXTENSIONS};
 use nodes::Reader;
 use peelnet_core::files::{counted, printable};
 use serde_json::Value;
-use std::{borrow::Cow, path::Path};
+use std::{borrow::Cow, path::Path, sync::Arc};
 
 /// Size of the largest JSON that is read, bytes: in memory it takes up to 16 times as much. Buffers can lie outside of it.
 const MAX_JSON_BYTES: usize = 256 << 20;
@@ -42,6 +43,7 @@ struct Parsed {
     blob: Option<Vec<u8>>,
     /// See [`checks::loses_transforms`].
     loses_transforms: bool,
+    declared: splats::AllDeclared,
 }
 
 /// The document of a glTF or GLB file, checked.
@@ -73,6 +75,7 @@ fn parse(bytes: &[u8]) -> Result<Parsed, String> {
     checks::check_version(&document)?;
     checks::check_extensions(&document)?;
     let loses_transforms = checks::loses_transforms(&document);
+    let declared = splats::take_declared(&mut document);
     let mut root: Root = serde_json::from_value(document)
         // The text has lines and columns for it.
         .map_err(|e| bad(&Root::from_slice(text).err().unwrap_or(e)))?;
@@ -84,6 +87,7 @@ fn parse(bytes: &[u8]) -> Result<Parsed, String> {
         document,
         blob,
         loses_transforms,
+        declared,
     })
 }
 
@@ -94,7 +98,8 @@ pub(super) fn load(path: &Path, files: &mut Files<'_>) -> Result<Imported, Scene
     let parsed = parse(&bytes).map_err(&fail)?;
     let (document, blob) = (parsed.document, parsed.blob);
     drop(bytes);
-    let mut reader = Reader::new(path, files);
+    let mut reader = Reader::new(path, files, &document);
+    reader.declared = Arc::new(parsed.declared);
     let read = reader.read_buffers(&document, blob);
     read.map_err(|e| fail(format!("its buffer {e}; keep the .bin files beside it")))?;
     reader.check_zeros(&document).map_err(&fail)?;
@@ -128,7 +133,9 @@ pub(super) fn load(path: &Path, files: &mut Files<'_>) -> Result<Imported, Scene
     if document.skins().len() > 0 {
         reader.missing("skins (the bind pose is drawn)", "", "");
     }
-    let is_unknown = |extension: &&str| !ENABLED_EXTENSIONS.contains(extension);
+    let is_unknown = |extension: &&str| {
+        !ENABLED_EXTENSIONS.contains(extension) && *extension != splats::SPLATTING
+    };
     for extension in document.extensions_used().filter(is_unknown) {
         reader.missing("extensions: ", &printable(extension), "");
     }

@@ -1,4 +1,4 @@
-//! PLY files (Turk 1994), ASCII and binary of either byte order: meshes of scanners.
+//! PLY files (Turk 1994), ASCII and binary of either byte order: meshes of scanners, and splats.
 //!
 //! `ply-rs-bw` reads the header and the elements. Before it, counts are compared with the length of the file, so that nothing is made of what a
 //! file cannot hold, and numbers of text that its grammar refuses, such as `.5` and `1.`, are written in another way.
@@ -7,6 +7,7 @@ use super::{
     obj::BRIGHT,
     ply_elements::{ALPHA, BLUE, Face, GREEN, INDICES, RED, Skipped, U, Vertex},
     polygons::{Triangulator, strip},
+    splats,
     surface::{Fault, fault_of, in_file, warn_of_rest},
 };
 use crate::{budget::Budget, files::Files, mesh::Mesh};
@@ -20,7 +21,7 @@ use std::{borrow::Cow, io::ErrorKind, path::Path};
 
 const MAX_HEADER: usize = 1 << 20;
 
-/// Reads a PLY file: positions, normals, colours with opacity, texture coordinates (of vertices or of the vertices of faces), polygons and
+/// Reads a PLY file of splats, or of a mesh: positions, normals, colours with opacity, texture coordinates (of vertices or of the vertices of faces), polygons and
 /// triangle strips.
 ///
 /// Colours in bytes are sRGB, as programs show them, colours in floating-point numbers linear. Missing normals are computed.
@@ -41,6 +42,18 @@ pub(super) fn read(path: &Path, bytes: &[u8], files: &mut Files<'_>) -> Result<M
         true => check_lines(&header, &bytes, head)?,
         false => 0,
     };
+    let warn_of_more = |input: &Reader<&[u8]>, files: &mut Files<'_>| {
+        let (rest, unit) = match is_text {
+            true => (more_lines, "line"),
+            false => (input.get_ref().len() as u64, "byte"),
+        };
+        warn_of_rest(files, path, rest, unit, "element");
+    };
+    if let Some(read) = splats::ply::reader(&header) {
+        let mesh = read(&mut input, &header, path, files)?;
+        warn_of_more(&input, files);
+        return Ok(mesh);
+    }
     let count = |name: &str| header.elements.get(name).map_or(0, |e| e.count as u64);
     let (vertices, faces) = (count("vertex"), count("face") + count("tristrips"));
     if faces == 0 {
@@ -94,11 +107,7 @@ pub(super) fn read(path: &Path, bytes: &[u8], files: &mut Files<'_>) -> Result<M
     if reader.is_bright {
         files.warn(path, BRIGHT);
     }
-    let (rest, unit) = match is_text {
-        true => (more_lines, "line"),
-        false => (input.get_ref().len() as u64, "byte"),
-    };
-    warn_of_rest(files, path, rest, unit, "element");
+    warn_of_more(&input, files);
     if short_faces > 0 {
         let count = counted(short_faces, "face");
         files.warn(path, &(count + " of fewer than 3 vertices left out"));
@@ -114,7 +123,7 @@ fn fault(what: &str, e: &ParseError, has_lines: bool) -> Fault {
     (e.line().filter(|_| has_lines), message)
 }
 
-fn elements<E: PropertyAccess>(
+pub(super) fn elements<E: PropertyAccess>(
     input: &mut Reader<&[u8]>,
     element: &ElementDef,
     header: &Header,

@@ -1,4 +1,4 @@
-//! Surfaces of OBJ, PLY and STL files, as meshes.
+//! Surfaces of OBJ, PLY and STL files, as meshes; files of splats are loaded in the same way.
 
 use super::Imported;
 use crate::{
@@ -30,6 +30,7 @@ pub(super) fn load(
     });
     let mesh = mesh.map_err(|(line, message)| SceneError::file(path, line, message))?;
     Ok(Imported {
+        is_y_down: mesh.splats.is_some(),
         mesh,
         ..Imported::default()
     })
@@ -59,8 +60,11 @@ pub(super) fn fault_of(position: Vec3) -> Option<String> {
 }
 
 impl Mesh {
-    /// An opaque light grey material, which is white under vertex colours.
+    /// An opaque light grey material, which is white under vertex colours; of splats, which have colours and opacities of their own, a white one.
     fn material(&mut self, path: &Path, files: &mut Files<'_>) -> Material {
+        if self.splats.is_some() {
+            return Material::unlit([1.0; 3], 1.0);
+        }
         let mut material = Material::default_with(files.lighting);
         if self.colors.is_empty() {
             return material;
@@ -75,8 +79,11 @@ impl Mesh {
         material
     }
 
-    /// Drops triangles without area: exactly zero, as a sliver is a triangle. Returns how many.
+    /// Drops triangles without area, but not those of splats: exactly zero, as a sliver is a triangle. Returns how many.
     pub(super) fn drop_degenerate(&mut self) -> usize {
+        if self.splats.is_some() {
+            return 0;
+        }
         let all = self.triangles.len();
         let has_area = |t: &[u32; 3]| area_of(&self.positions, *t) != Vec3::ZERO;
         if self.triangles.iter().all(has_area) {

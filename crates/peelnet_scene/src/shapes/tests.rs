@@ -142,3 +142,36 @@ fn terrain_faces_up_within_its_box() {
     assert_eq!(mesh.positions, build(&text(3)).positions);
     assert_ne!(mesh.positions, build(&text(4)).positions);
 }
+
+/// Splats of a shape are those of its seed, flat along their normals and mostly faint, and their colours are those that a display has.
+#[test]
+fn splats_are_as_captures_have_them() {
+    let mesh = build("shape = 'splats'\ndegree = 2\nseed = 3");
+    assert_eq!(mesh, build("shape = 'splats'\ndegree = 2\nseed = 3"));
+    assert_ne!(mesh, build("shape = 'splats'\ndegree = 2"));
+    assert_eq!(mesh.parts[0].material, Material::unlit([1.0; 3], 1.0));
+    let splats = mesh.splats.as_ref().expect("splats");
+    assert_eq!(mesh.positions.len(), 2000);
+    assert_eq!(splats.harmonics.len(), 2000 * 9);
+    let inside = mesh.positions.iter().filter(|p| p.length() < 1.2).count();
+    assert!((1960..2000).contains(&inside), "{inside}");
+    assert!(splats.opacities.iter().all(|a| (0.05..=0.99).contains(a)));
+    let mean = splats.opacities.iter().sum::<f32>() / 2000.0;
+    assert!((0.2..0.4).contains(&mean), "{mean}");
+    for (i, scale) in splats.scales.iter().enumerate() {
+        assert!(scale.z <= 0.5 * scale.y && splats.rotations[i].is_normalized());
+        let color = splats.harmonics[9 * i].map(|c| 0.5 + crate::CONSTANT_HARMONIC * c);
+        assert!(color.iter().all(|c| (0.0..=1.0).contains(c)), "{color:?}");
+    }
+    for (text, words) in [
+        ("count = 0", "count 0 must lie in 1 … 20000000"),
+        ("degree = 4", "degree 4"),
+        ("size = 0.0", "size 0"),
+        ("opacity = 2.0", "opacity"),
+    ] {
+        let shape: Shape = toml::from_str(&format!("shape = 'splats'\n{text}")).expect(text);
+        let e = shape.build(&Material::unlit([1.0; 3], 1.0), false);
+        let e = e.expect_err(text);
+        assert!(e.contains(words), "{e}");
+    }
+}

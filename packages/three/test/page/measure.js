@@ -1,7 +1,7 @@
 // Images as numbers, the exact reference, and errors.
 
 import * as THREE from 'three/webgpu';
-import { Discard, Fn, If, ivec2, mrt, output, positionView, screenCoordinate, textureLoad, uniform, vec4 } from 'three/tsl';
+import { Discard, Fn, If, cameraProjectionMatrixInverse, ivec2, mrt, output, positionView, screenCoordinate, textureLoad, uniform, varying, vec4 } from 'three/tsl';
 
 // Rows of 4-byte texels are then a multiple of 256 bytes, which WebGPU pads them to.
 export const WIDTH = 320;
@@ -72,7 +72,16 @@ export async function peeled( renderer, scene, camera, mostLayers = 64 ) {
 
 	for ( const target of [ opaque, ...targets ] ) [ 'layer', 'distance' ].forEach( ( name, i ) => ( target.textures[ i ].name = name ) );
 
-	const distance = positionView.z.negate();
+	// Along the view axis, of where the material puts its vertices.
+	const distance = Fn( ( { material } ) => {
+
+		if ( material.vertexNode?.isNode !== true ) return positionView.z.negate();
+
+		const view = cameraProjectionMatrixInverse.mul( varying( vec4( material.vertexNode ) ) );
+
+		return view.z.div( view.w ).negate();
+
+	} )();
 	const texel = ivec2( screenCoordinate.xy );
 	const previous = textureLoad( targets[ 1 ].textures[ 1 ], texel );
 	const solid = textureLoad( opaque.textures[ 1 ], texel );

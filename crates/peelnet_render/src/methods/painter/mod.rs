@@ -12,12 +12,20 @@ const SORT: Parameter = Parameter::words(
     &["on", "off"],
 );
 
+/// Of triangles.
+const SORT_ON: Parameter = Parameter::words(
+    "sort",
+    "cpu (default) or gpu: where triangles are sorted; on the GPU by a radix sort, for scenes of one kind of material, such as splats",
+    &["cpu", "gpu"],
+);
+
 fn sorts(spec: &MethodSpec) -> bool {
-    SORT.word(spec) == "on"
+    spec.name() == "painter-triangle" || SORT.word(spec) == "on"
 }
 
 fn order(spec: &MethodSpec) -> Order {
     match spec.name() {
+        "painter-triangle" if SORT_ON.word(spec) == "gpu" => Order::TrianglesOnGpu,
         "painter-triangle" => Order::Triangles,
         _ if sorts(spec) => Order::Objects,
         _ => Order::Scene,
@@ -42,10 +50,13 @@ pub(super) const OBJECTS: Method = Method {
     )
 };
 
-pub(super) const TRIANGLES: Method = painter(
-    "painter-triangle",
-    "triangles sorted on the CPU, hardware blending",
-);
+pub(super) const TRIANGLES: Method = Method {
+    parameters: &[TARGETS, SORT_ON],
+    ..painter(
+        "painter-triangle",
+        "triangles, or splats, sorted by their centres, hardware blending",
+    )
+};
 
 fn passes(p: &mut Passes<'_>) {
     p.order = order(p.on.spec);

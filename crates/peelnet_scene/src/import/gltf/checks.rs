@@ -1,6 +1,7 @@
 //! Checks that the `gltf` crate does not do: it panics on positions out of range, on an image, a camera or a light that lacks its part, and on
 //! an accessor of the wrong type.
 
+use super::splats::SPLATTING;
 use crate::{budget::MAX_TRIANGLES, files::MAX_MESH};
 use gltf::{
     Semantic,
@@ -112,7 +113,7 @@ pub(super) fn list_extensions(document: &mut Value) {
 pub(super) fn check_extensions(document: &Value) -> Result<(), String> {
     let required = document["extensionsRequired"].as_array();
     let mut required = required.into_iter().flatten().filter_map(Value::as_str);
-    let unknown = required.find(|name| !ENABLED_EXTENSIONS.contains(name));
+    let unknown = required.find(|name| !ENABLED_EXTENSIONS.contains(name) && *name != SPLATTING);
     unknown.map_or(Ok(()), |name| {
         Err(format!(
             "needs the extension {}, which is not read; export it without",
@@ -173,6 +174,11 @@ pub(super) fn is_readable(accessor: &gltf::Accessor<'_>, semantic: Option<&Seman
         // Nobody reads it.
         Some(_) => return true,
     };
+    fits && is_addressed(accessor)
+}
+
+/// Whether an accessor can be addressed.
+pub(super) fn is_addressed(accessor: &gltf::Accessor<'_>) -> bool {
     let (count, size) = (accessor.count(), accessor.size());
     let is_dense_readable = accessor
         .view()
@@ -185,9 +191,7 @@ pub(super) fn is_readable(accessor: &gltf::Accessor<'_>, semantic: Option<&Seman
             && is_addressable(&indices.view(), indices.offset(), index_size, n)
             && is_addressable(&values.view(), values.offset(), size, n)
     });
-    fits && is_dense_readable
-        && is_sparse_readable
-        && (1..=3 * MAX_TRIANGLES as usize).contains(&count)
+    is_dense_readable && is_sparse_readable && (1..=3 * MAX_TRIANGLES as usize).contains(&count)
 }
 
 /// Whether `count` elements do not overlap, can be in a file, and the crate's sums of offsets and lengths fit a `usize`, on 32-bit

@@ -1,5 +1,6 @@
 //! Nodes, lights and cameras.
 
+use super::splats::{AllDeclared, count};
 use crate::{
     budget::{self, MAX_PARTS},
     camera::Camera,
@@ -17,6 +18,9 @@ use std::{collections::HashMap, path::Path, sync::Arc};
 pub(super) struct Reader<'a, 'f> {
     pub path: &'a Path,
     pub files: &'a mut Files<'f>,
+    pub document: &'a gltf::Document,
+    /// Primitives that are splats.
+    pub declared: Arc<AllDeclared>,
     pub buffers: Vec<Arc<Vec<u8>>>,
     /// By source, and whether opacity is left out; `None` for those that cannot be drawn.
     pub images: HashMap<(String, bool), Option<Arc<Texture>>>,
@@ -41,8 +45,12 @@ fn sum(a: [u64; 3], b: [u64; 3]) -> [u64; 3] {
 }
 
 /// How many primitives, triangles and vertices a mesh has.
-fn size(mesh: &gltf::Mesh<'_>) -> [u64; 3] {
+fn size(mesh: &gltf::Mesh<'_>, declared: &AllDeclared) -> [u64; 3] {
     mesh.primitives().fold([0; 3], |all, primitive| {
+        if let Some(declared) = declared.get(&(mesh.index(), primitive.index())) {
+            let splats = count(&primitive, declared);
+            return splats.map_or(all, |n| sum(all, [1, n, n]));
+        }
         let vertices = primitive.get(&Semantic::Positions);
         let vertices = vertices.map_or(0, |a| a.count() as u64);
         let indices = primitive.indices().map_or(vertices, |a| a.count() as u64);
@@ -62,10 +70,12 @@ fn size(mesh: &gltf::Mesh<'_>) -> [u64; 3] {
 }
 
 impl<'a, 'f> Reader<'a, 'f> {
-    pub fn new(path: &'a Path, files: &'a mut Files<'f>) -> Self {
+    pub fn new(path: &'a Path, files: &'a mut Files<'f>, document: &'a gltf::Document) -> Self {
         Self {
             path,
             files,
+            document,
+            declared: Arc::default(),
             buffers: Vec::new(),
             images: HashMap::new(),
             not_drawn: format!("{}: not drawn: ", shown(path)),
@@ -92,7 +102,8 @@ impl<'a, 'f> Reader<'a, 'f> {
         let mut meshes: HashMap<usize, [u64; 3]> = HashMap::new();
         let shown = nodes.iter().filter_map(|(node, _)| node.mesh());
         let all = shown.fold([0; 3], |all, mesh| {
-            let own = meshes.entry(mesh.index()).or_insert_with(|| size(&mesh));
+            let own = meshes.entry(mesh.index());
+            let own = own.or_insert_with(|| size(&mesh, &self.declared));
             sum(all, *own)
         });
         let [primitives, triangles, vertices] = all;

@@ -9,6 +9,7 @@ use crate::{
 };
 use glam::{Mat3, Mat4, Vec2, Vec3};
 use gltf::{Semantic, material::AlphaMode, mesh::Mode};
+use std::sync::Arc;
 
 impl Reader<'_, '_> {
     /// Adds a primitive of a mesh in its place in the world.
@@ -20,6 +21,11 @@ impl Reader<'_, '_> {
     ) -> Result<(), SceneError> {
         let place = format!("mesh {}, primitive {}", mesh.index(), primitive.index());
         let mode = primitive.mode();
+        let declared = Arc::clone(&self.declared);
+        let declared = declared.get(&(mesh.index(), primitive.index()));
+        if let Some(declared) = declared.filter(|_| mode == Mode::Points) {
+            return self.splats(mesh, primitive, declared, world);
+        }
         if !matches!(
             mode,
             Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan
