@@ -86,4 +86,6 @@ macro_rules! readers {
     ($($name:ident),*) => { $(#[test] fn $name() { search(stringify!($name)); })* };
 }
 
-readers!(scene, obj, dataset, model, gltf, ply, stl, texture, results, splat, spz);
+readers!(
+    scene, obj, dataset, model, gltf, ply, stl, texture, results, splat, spz
+);

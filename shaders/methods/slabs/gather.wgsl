@@ -1,6 +1,6 @@
 // Slabs, pass 2: the exported text's weight of each fragment.
-// Variants: none | small | medium | tinted | small tinted | medium tinted | frame | small frame | medium frame | tinted frame | small tinted frame | medium tinted frame | boxes | small boxes | medium boxes | tinted boxes | small tinted boxes | medium tinted boxes | pixel | small pixel | medium pixel | tinted pixel | small tinted pixel | medium tinted pixel
-@if(!frame && !boxes && !pixel) import package::helpers::quantiles::around_of;
+// Variants: none | small | medium | tinted | small tinted | medium tinted | frame | small frame | medium frame | tinted frame | small tinted frame | medium tinted frame | boxes | small boxes | medium boxes | tinted boxes | small tinted boxes | medium tinted boxes
+@if(!frame && !boxes) import package::helpers::quantiles::around_of;
 @if(boxes) import package::helpers::quantiles::in_range;
 import package::helpers::quantiles::zeta_of;
 @if(frame) import package::learned::weight::peelnet_even;
@@ -15,9 +15,8 @@ import package::scene::visible::visible;
 @if(!small) @group(1) @binding(2) var farthest: texture_2d<f32>;
 @if(!medium) @group(1) @binding(3) var firsts: texture_2d<f32>;
 @if(boxes) @group(1) @binding(4) var range: texture_2d<f32>;
-@if(!frame && !boxes && !pixel) @group(1) @binding(5) var quantiles: texture_2d<f32>;
-@if(!frame && !boxes && !pixel) @group(1) @binding(6) var bilinear: sampler;
-@if(pixel) @group(1) @binding(7) var own_quantiles: texture_2d<f32>;
+@if(!frame && !boxes) @group(1) @binding(5) var quantiles: texture_2d<f32>;
+@if(!frame && !boxes) @group(1) @binding(6) var bilinear: sampler;
 
 struct Sums {
     @location(0) sum: vec4f,
@@ -35,7 +34,6 @@ fn fragment_main(surface: Surface) -> Sums {
     let zeta = zeta_of(surface.depth_linear);
     @if(frame) let around = peelnet_even();
     @elif(boxes) let around = in_range(textureLoad(range, pixel, 0).xy);
-    @elif(pixel) let around = textureLoad(own_quantiles, pixel, 0);
     @else let around = around_of(quantiles, bilinear, surface.position.xy);
     let a = textureLoad(absorbances, pixel, 0);
     let n = textureLoad(nearest, pixel, 0);

@@ -1,7 +1,7 @@
 // Slabs, pass 1: the exported text's statistics: each slab's absorbance and mean depth, by adding, and its nearest and farthest fragment,
 // by MAX blending.
-// Variants: none | small | medium | frame | small frame | medium frame | boxes | small boxes | medium boxes | pixel | small pixel | medium pixel
-@if(!frame && !boxes && !pixel) import package::helpers::quantiles::around_of;
+// Variants: none | small | medium | frame | small frame | medium frame | boxes | small boxes | medium boxes
+@if(!frame && !boxes) import package::helpers::quantiles::around_of;
 @if(boxes) import package::helpers::quantiles::in_range;
 import package::helpers::quantiles::zeta_of;
 @if(frame) import package::learned::weight::peelnet_even;
@@ -11,9 +11,8 @@ import package::scene::surface::Surface;
 import package::scene::visible::visible;
 
 @if(boxes) @group(1) @binding(0) var range: texture_2d<f32>;
-@if(!frame && !boxes && !pixel) @group(1) @binding(1) var quantiles: texture_2d<f32>;
-@if(!frame && !boxes && !pixel) @group(1) @binding(2) var bilinear: sampler;
-@if(pixel) @group(1) @binding(3) var own_quantiles: texture_2d<f32>;
+@if(!frame && !boxes) @group(1) @binding(1) var quantiles: texture_2d<f32>;
+@if(!frame && !boxes) @group(1) @binding(2) var bilinear: sampler;
 
 struct Statistics {
     @location(0) absorbances: vec4f,
@@ -32,7 +31,6 @@ fn fragment_main(surface: Surface) -> Statistics {
     let pixel = vec2u(surface.position.xy);
     @if(frame) let around = peelnet_even();
     @elif(boxes) let around = in_range(textureLoad(range, pixel, 0).xy);
-    @elif(pixel) let around = textureLoad(own_quantiles, pixel, 0);
     @else let around = around_of(quantiles, bilinear, surface.position.xy);
     let s = peelnet_statistics(opacity(surface), zeta, around);
     @if(small) return Statistics(s.absorbances, s.nearest, s.firsts);

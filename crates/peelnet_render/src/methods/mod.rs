@@ -27,6 +27,7 @@ mod painter;
 pub(crate) mod parameter;
 pub mod slabs;
 pub(crate) mod spec;
+mod splat;
 pub mod stochastic;
 pub mod stored_colors;
 mod tiles;
@@ -94,6 +95,7 @@ pub const METHODS: &[Method] = &[
     mboit::TRIGONOMETRIC,
     wavelet::METHOD,
     bins::METHOD,
+    splat::METHOD,
     avboit::METHOD,
     kbuffer::PLAIN,
     kbuffer::HYBRID,

@@ -23,7 +23,7 @@ const FLATNESS: f32 = 0.15;
 const SPREAD: f32 = 0.6;
 
 /// Part of the splats that are large, faint and anywhere; and part of these that are far outside.
-const FLOATERS: f32 = 0.06;
+const FLOATERS: f32 = 0.03;
 const FAR: f32 = 0.1;
 
 /// A sphere with bumps.
@@ -88,7 +88,7 @@ impl SplatCloud {
         };
         for i in 0..self.count as u32 {
             let log_size = SPREAD * gaussian(&mut random);
-            let skewed = random.unit().powf(2.5);
+            let skewed = random.unit().powf(1.5);
             let size = self.size * log_size.clamp(-2.5, 2.5).exp();
             let spin = random.between(0.0, TAU);
             let towards = direction(&mut random);

@@ -16,23 +16,12 @@ const KEEP: Parameter = Parameter::words(
 
 const RANGE: Parameter = Parameter::words(
     "range",
-    "where the depths come from that slabs are cut at: one pixel in 64, drawn first without shading (tiles, by default); sixteen bins of the pixel's own depths, drawn after those, which also say behind which depth nothing is seen (pixel): for pixels of a hundred layers; from where the pixel's ray enters the first box around a transparent part to where it leaves the last (boxes), found by a pass over boxes; or the frame's nearest and farthest depth (frame). Without tiles errors are several times as large",
-    &["tiles", "pixel", "boxes", "frame"],
+    "where the depths come from that slabs are cut at: one pixel in 64, drawn first without shading (tiles, by default); from where the pixel's ray enters the first box around a transparent part to where it leaves the last (boxes), found by a pass over boxes; or the frame's nearest and farthest depth (frame). Without tiles errors are several times as large",
+    &["tiles", "boxes", "frame"],
 );
 
 /// A pixel's ends, as boxes say.
 const BOXES: Target = Target::half("range", 2, Blend::MaxBytes);
-
-/// Absorbance by bins of depth.
-const BINS: [Target; 4] = [
-    Target::half("bins_a", 4, Blend::Add),
-    Target::half("bins_b", 4, Blend::Add),
-    Target::half("bins_c", 4, Blend::Add),
-    Target::half("bins_d", 4, Blend::Add),
-];
-
-/// Quantiles of what is seen in a pixel.
-const OWN_QUANTILES: Target = Target::half("own_quantiles", 4, Blend::Add);
 
 /// What a method without a network keeps.
 fn plain_layout(spec: &MethodSpec) -> Layout {
@@ -105,12 +94,10 @@ fn passes(p: &mut Passes<'_>) {
     let is_large = layout == Layout::Large;
     let own_layout = (!is_large).then_some(layout.name());
     let range = RANGE.word(p.on.spec);
-    let sources = ["frame", "boxes", "pixel"];
-    let source = sources.into_iter().find(|word| *word == range);
+    let source = ["frame", "boxes"].into_iter().find(|word| *word == range);
     let features = || own_layout.into_iter().chain(source);
     let sums = p.target(SUMS);
-    let mut depth = None;
-    let mut kept = Vec::new();
+    let kept = p.described(of_slabs.targets);
     let found = match (source, surroundings.around) {
         (Some("boxes"), _) => {
             let range = p.target(BOXES);
@@ -119,46 +106,18 @@ fn passes(p: &mut Passes<'_>) {
             Some(range)
         }
         (None, Some(around)) => Some(tiles::draw(p, around, false).quantiles),
-        (Some("pixel"), Some(around)) => {
-            let tiles = tiles::draw(p, around, false).quantiles;
-            let bins = p.targets(BINS);
-            p.geometry("methods::slabs::bins", Needs::OPACITY)
-                .reads([tiles])
-                .writes(bins.iter().copied());
-            let own = p.target(OWN_QUANTILES);
-            depth = Some(p.depth());
-            p.pixels("methods::slabs::pixel")
-                .reads([tiles])
-                .reads(bins.iter().copied())
-                .writes([own])
-                .depth(depth);
-            // What is kept of a pixel takes the place of its bins.
-            for (target, bins) in of_slabs.targets.iter().zip(bins) {
-                let target = Target::described(target);
-                kept.push(match target.format() == BINS[0].format() {
-                    true => p.again(bins, target),
-                    false => p.target(target),
-                });
-            }
-            Some(own)
-        }
         _ => None,
     };
-    if kept.is_empty() {
-        kept = p.described(of_slabs.targets);
-    }
     let first = kept[0];
     p.geometry("methods::slabs::statistics", Needs::OPACITY)
         .features(features())
         .reads(found)
-        .writes(kept.iter().copied())
-        .depth(depth);
+        .writes(kept.iter().copied());
     p.geometry("methods::slabs::gather", Needs::COLOR)
         .features(features())
         .reads(kept)
         .reads(found)
-        .writes([sums])
-        .depth(depth);
+        .writes([sums]);
     p.resolve("methods::slabs::resolve", [sums, first])
         .features((!is_large).then_some("three"));
     p.tint();
