@@ -19,7 +19,7 @@ struct Surface {
     @if(vertex_colors) @location(9) color: vec4f,
     // From the centre of a splat, in standard deviations, times the depth: linear on the screen once divided by it. Not all rasterisers clip
     // what they should interpolate so.
-    @if(splat) @location(4) gaussian: vec2f,
+    @if(splat) @location(10) gaussian: vec2f,
     // Colour of a splat, and its opacity in the middle.
-    @if(splat) @location(5) @interpolate(flat) splat: vec4f,
+    @if(splat) @location(11) @interpolate(flat) splat: vec4f,
 }

@@ -1,9 +1,11 @@
 //! Effects of materials and lights: they cost nothing in a scene without them, and neutral values change nothing.
 
+use crate::splats::{ONE, One, cloud};
 use glam::Vec3;
 use peelnet_render::Renderer;
 use peelnet_scene::{
-    EFFECTS, Effect, Light, Lighting, Material, MaterialFlags, Scene, SceneFeatures, Source,
+    Blending, EFFECTS, Effect, Light, Lighting, Material, MaterialFlags, Scene, SceneFeatures,
+    Source,
 };
 use peelnet_tests::{assert_alike, draw, even, gpu, light, opaque, prepare, scene, wall};
 use std::sync::Arc;
@@ -53,6 +55,11 @@ fn add(effect: &Effect, all: &mut Scene, neutral: bool) {
             source: Source::Toward(Vec3::Z),
             ..light(Vec3::ZERO, either([1.0; 3], 0.0))
         }),
+        "splats" => all.objects.push(cloud(&[One {
+            opacity: if neutral { 0.0 } else { 0.5 },
+            ..ONE
+        }])),
+        "display-space" => all.blending = Blending::Display,
         "monochrome" => {
             material.color = [0.6; 3];
             all.objects[1].materials[0].color = [0.3; 3];
@@ -111,6 +118,8 @@ const BROUGHT: &str = "
     emissive-map | sampler, emissive-map | uv | emissive_map
     vertex-colors | | color | surface.color
     directional-light | lights | normal | light.is_point
+    splats | splats, harmonics | splat | gaussian
+    display-space | | | shown_of
     monochrome | | |
     low-resolution | | |";
 
@@ -158,8 +167,9 @@ fn what_is_not_called_for_is_not_there() {
         let mut dark = with.clone();
         dark.lights.clear();
         assert!(with.lights.is_empty() || !SceneFeatures::new(&dark).has(effect));
-        // One plain object keeps the text of its shader, whatever another one needs.
-        assert!(features.variants.contains(&plain[0]), "{effect}");
+        // One plain object keeps the text of its shader, whatever another one needs; but all blend in one space.
+        let of_all = effect.name == "display-space";
+        assert!(of_all || features.variants.contains(&plain[0]), "{effect}");
         assert!(features.variants.len() <= 2, "{effect}");
         let renderer = Renderer::new(&gpu, &with).unwrap();
         let bindings = renderer.bindings();
@@ -199,6 +209,13 @@ fn neutral(effect: &Effect) -> [Scene; 2] {
     match effect.name {
         "cutout" => {
             plain.objects[1] = wall(5.0, opaque([0.1, 0.9, 0.4]));
+            with = plain.clone();
+        }
+        "display-space" => {
+            // Of one colour all mixtures are that, in either space.
+            for object in &mut plain.objects {
+                object.materials[0].color = plain.background;
+            }
             with = plain.clone();
         }
         "monochrome" => {

@@ -245,7 +245,10 @@ fn every_method_has_a_reference() {
         let has_boxes = |s: &MethodSpec| s.to_string().contains("range=boxes");
         // `tiles` tests what depends on the pixels around.
         let has_range = || method.parameters.iter().any(|p| p.name == "range");
-        let looks_around = |s: &MethodSpec| has_range() && !s.to_string().contains("range=frame");
+        // `splats` does, of what always depends on them.
+        let always_looks = method.name == "splat";
+        let looks_around =
+            |s: &MethodSpec| always_looks || has_range() && !s.to_string().contains("range=frame");
         let of_pixels = own().filter(|s| !s.is_scaled() && !has_boxes(s) && !looks_around(s));
         for spec in of_pixels {
             let model = network_of(spec).map(|(_, model)| model);

@@ -19,15 +19,15 @@ const OPACITY: f32 = 2e-4;
 
 /// What a splat is made of; its colour is what a display shows.
 #[derive(Clone, Copy)]
-struct One {
-    center: Vec3,
-    scale: Vec3,
-    turn: Quat,
-    opacity: f32,
-    color: [f32; 3],
+pub(crate) struct One {
+    pub center: Vec3,
+    pub scale: Vec3,
+    pub turn: Quat,
+    pub opacity: f32,
+    pub color: [f32; 3],
 }
 
-const ONE: One = One {
+pub(crate) const ONE: One = One {
     center: Vec3::new(0.0, 0.0, -3.0),
     scale: Vec3::splat(0.3),
     turn: Quat::IDENTITY,
@@ -35,7 +35,7 @@ const ONE: One = One {
     color: [1.0; 3],
 };
 
-fn cloud(all: &[One]) -> Object {
+pub(crate) fn cloud(all: &[One]) -> Object {
     let splats = Splats {
         scales: all.iter().map(|s| s.scale).collect(),
         rotations: all.iter().map(|s| s.turn).collect(),
@@ -166,7 +166,7 @@ fn splats_cover_what_the_textbook_says() {
                     format_args!("splat {k}, {pixel:?}"),
                 );
             }
-            // A thin one of no extent is as wide as the blur.
+            // One without extent is as wide as the blur.
             assert!(
                 seen >= 4 || antialiased,
                 "splat {k} is seen in {seen} pixels"

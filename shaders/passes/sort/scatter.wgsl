@@ -1,7 +1,7 @@
 // Sorting triangles, step 4: puts each key where it belongs by one byte, those that are alike in their order; the last time the numbers of
 // its triangle's vertices.
 // Variants: none | last
-// Loops: 3: four keys, four keys, and 256 of a block for each.
+// Loops: 4: four keys, four keys, 256 of a block for each, and three vertices.
 import package::parameters::SHIFT;
 import package::passes::sort::blocks::Extent;
 

@@ -69,7 +69,7 @@ fn compare(list: &Passes<'_>, pass: &Pass) -> Option<String> {
     // A geometry pass has the scene in group 0.
     let group = u32::from(matches!(pass.draws, Draws::Surfaces | Draws::Boxes));
     let is_own = |b: &&Binding| b.group == group;
-    let always = |name: &&str| !["background", "bilinear", "frame"].contains(name);
+    let always = |name: &&str| !["background", "bilinear", "camera", "frame"].contains(name);
     let variables = shader
         .bindings
         .iter()
@@ -77,7 +77,9 @@ fn compare(list: &Passes<'_>, pass: &Pass) -> Option<String> {
         .map(|b| b.name.as_str());
     let variables: BTreeSet<_> = variables.filter(always).collect();
     let resource = |handle: &Handle| &list.resources[handle.0];
-    let is_target = |r: &&Resource| matches!(r, Resource::Target(_)) || r.name() == "output";
+    let is_target = |r: &&Resource| {
+        matches!(r, Resource::Target(_) | Resource::Again(..)) || r.name() == "output"
+    };
     let written = || pass.writes.iter().map(resource);
     let storage = written().filter(|r| !is_target(r));
     let names = pass.reads.iter().map(resource).chain(storage);
@@ -97,6 +99,8 @@ fn compare(list: &Passes<'_>, pass: &Pass) -> Option<String> {
         naga::TypeInner::Struct { members, .. } => members.len(),
         _ => 1,
     });
-    let targets = written().filter(is_target).count();
+    // A pass over pixels may write depth besides.
+    let depth = usize::from(pass.depth.is_some() && pass.draws == Draws::Pixels);
+    let targets = written().filter(is_target).count() + depth;
     (outputs != targets).then(|| format!("it has {outputs} outputs and {targets} targets"))
 }
