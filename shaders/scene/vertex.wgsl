@@ -1,4 +1,5 @@
 // The only vertex shader of surfaces: every pass shares it, so that depth comes out bit-identical in all of them.
+// Variants: none | splat splat_color | splat splat_color display
 import package::scene::camera::camera;
 @if(material) import package::scene::material::materials;
 @if(splat_color) import package::scene::splat::splat_color;

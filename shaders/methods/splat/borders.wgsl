@@ -14,6 +14,10 @@ import package::scene::camera::Camera;
 
 // What is let through where nothing is seen any more: no step of an 8-bit display.
 const UNSEEN: f32 = 1.0 / 255.0;
+// The last depth is found by a logarithm and an exponential, and compared with depths that were not: a share of it, and steps of a window depth
+// near 1, that no rounding reaches.
+const ROUNDED: f32 = 1.00002;
+const STEPS: f32 = 2.5e-7;
 
 struct Borders {
     @location(0) near: vec4f,
@@ -44,10 +48,10 @@ fn window_depth_of(depth: f32) -> f32 {
     var zeta = depth * (2.0 - (gaps.y - gaps.x) - (gaps.w - gaps.z)) - 1.0;
     zeta += select(0.0, gaps.y - gaps.x, zeta > gaps.x);
     zeta += select(0.0, gaps.w - gaps.z, zeta > gaps.z);
-    let linear = exp((zeta + 1.0) / max(camera.warp_scale, 1e-6)) * camera.warp_near;
+    let linear = exp((zeta + 1.0) / max(camera.warp_scale, 1e-6)) * camera.warp_near * ROUNDED;
     let far = camera.window_depth_at_infinity;
     let near = camera.clip_from_world[3].w - camera.clip_from_world[3].z / far;
-    return clamp(far - far * near / linear, 0.0, 1.0);
+    return clamp(far - far * near / linear + STEPS, 0.0, 1.0);
 }
 
 @fragment

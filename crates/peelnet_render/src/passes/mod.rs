@@ -554,6 +554,8 @@ impl<'a> Passes<'a> {
         });
         let state = depth.as_ref().map(|view| wgpu::DepthStencilState {
             depth_write_enabled: Some(pass.draws == Draws::Pixels),
+            // Far away all window depths are 1, and nothing lies behind.
+            depth_compare: Some(wgpu::CompareFunction::LessEqual),
             ..depth_state(view.texture().format())
         });
         let work = match pass.draws {

@@ -245,7 +245,7 @@ mod tests {
             "methods::deep_thesis" => "thesis",
             "methods::nmt" => "nmt",
             "methods::dfaoit" => "dfaoit",
-            "methods::slabs" => {
+            "methods::slabs" | "methods::splat" => {
                 let layouts = ["small", "medium"];
                 let layout = layouts.into_iter().find(|l| features.contains(l));
                 layout.unwrap_or("large")
