@@ -201,6 +201,20 @@ impl Pass {
         self
     }
 
+    /// How it uses its depth: over pixels it is written, surfaces are compared with it.
+    fn depth_state(&self, view: &wgpu::TextureView) -> wgpu::DepthStencilState {
+        let writes = self.draws == Draws::Pixels;
+        wgpu::DepthStencilState {
+            depth_write_enabled: Some(writes),
+            depth_compare: Some(match writes {
+                true => wgpu::CompareFunction::Always,
+                // Far away all window depths are 1, and nothing lies behind.
+                false => wgpu::CompareFunction::LessEqual,
+            }),
+            ..depth_state(view.texture().format())
+        }
+    }
+
     pub fn features(&mut self, all: impl IntoIterator<Item = &'static str>) -> &mut Self {
         self.features.extend(all);
         self
@@ -444,6 +458,18 @@ impl<'a> Passes<'a> {
         bytes.sum()
     }
 
+    /// Checks that the adapter writes as much of a sample at once as a pass does.
+    fn check_sample(&self, gpu: &Gpu, pass: &Pass, spec: &MethodSpec) -> Result<(), RenderError> {
+        gpu.check_limit(
+            format!("{spec}: pass {}", pass.label),
+            u64::from(self.sample_bytes(pass)),
+            u64::from(gpu.limits.max_color_attachment_bytes_per_sample),
+            "bytes a sample",
+            "choose a method that keeps less of a pixel",
+        )?;
+        Ok(())
+    }
+
     /// Allocates what the passes need and makes their pipelines.
     ///
     /// # Errors
@@ -541,23 +567,9 @@ impl<'a> Passes<'a> {
                 _ => {}
             }
         }
-        gpu.check_limit(
-            format!("{}: pass {}", b.spec, pass.label),
-            u64::from(self.sample_bytes(pass)),
-            u64::from(gpu.limits.max_color_attachment_bytes_per_sample),
-            "bytes a sample",
-            "choose a method that keeps less of a pixel",
-        )?;
-        let depth = pass.depth.and_then(|depth| match &resources[depth.0] {
-            Allocated::Texture(view) => Some(view.clone()),
-            _ => None,
-        });
-        let state = depth.as_ref().map(|view| wgpu::DepthStencilState {
-            depth_write_enabled: Some(pass.draws == Draws::Pixels),
-            // Far away all window depths are 1, and nothing lies behind.
-            depth_compare: Some(wgpu::CompareFunction::LessEqual),
-            ..depth_state(view.texture().format())
-        });
+        self.check_sample(gpu, pass, b.spec)?;
+        let depth = pass.depth.and_then(|depth| resources[depth.0].texture());
+        let state = depth.as_ref().map(|view| pass.depth_state(view));
         let work = match pass.draws {
             Draws::Threads(threads) => {
                 let kernel = Kernel::link(gpu, shader, &features, &modules, &entries)?;
@@ -566,10 +578,7 @@ impl<'a> Passes<'a> {
             Draws::Pixels => {
                 let onto = Onto {
                     samples,
-                    depth: state.map(|state| wgpu::DepthStencilState {
-                        depth_compare: Some(wgpu::CompareFunction::Always),
-                        ..state
-                    }),
+                    depth: state,
                 };
                 let pass =
                     FullscreenPass::new(gpu, shader, &features, &modules, &entries, &states, onto);
@@ -624,6 +633,15 @@ pub(crate) enum Allocated {
     Uniform(wgpu::Buffer),
     /// Where the finished picture goes, blended as that is; there is no resolve then.
     Output,
+}
+
+impl Allocated {
+    fn texture(&self) -> Option<wgpu::TextureView> {
+        match self {
+            Self::Texture(view) => Some(view.clone()),
+            _ => None,
+        }
+    }
 }
 
 /// Bytes of a pixel, bytes of the frame besides, and storage to be cleared.

@@ -388,8 +388,16 @@ fn closed_forms() {
     assert!((0.2 * (-0.5 * reach * reach).exp() / FAINTEST - 1.0).abs() < 1e-4);
 }
 
+/// It is refused in these words, with `&` between them.
+fn assert_refused(name: &str, bytes: &[u8], words: &str) {
+    let e = load(name, bytes).map(|_| ()).expect_err(words);
+    for word in words.split(" & ") {
+        assert!(e.contains(word), "no '{word}' in: {e}");
+    }
+}
+
 #[test]
-fn files_as_they_should_not_be() {
+fn files_that_are_cut_off() {
     let known = some_splats(3);
     let little = "binary_little_endian";
     let good = [
@@ -401,13 +409,18 @@ fn files_as_they_should_not_be() {
     for (name, bytes) in &good {
         // Between its splats, a .splat file ends as well as at its end.
         for cut in [1, 5, bytes.len() / 3 + 1, bytes.len() - 9] {
-            let e = load(name, &bytes[..bytes.len() - cut]).expect_err("cut off");
-            assert!(
-                e.contains(name) && e.contains("cut off"),
-                "{name} by {cut}: {e}"
+            assert_refused(
+                name,
+                &bytes[..bytes.len() - cut],
+                &format!("{name} & cut off"),
             );
         }
     }
+}
+
+#[test]
+fn files_as_they_should_not_be() {
+    let known = some_splats(3);
     let text = |bytes: Vec<u8>, from: &str, to: &str| {
         let text = String::from_utf8(bytes).expect("text");
         text.replacen(from, to, 1).into_bytes()
@@ -418,11 +431,6 @@ fn files_as_they_should_not_be() {
         antimatter(&[(value, known[0].1.clone())])
     };
     let first = known[0].0;
-    let gltf = |change: fn(&mut Value)| {
-        let mut document = gltf(&known, 1);
-        change(&mut document);
-        document.to_string().into_bytes()
-    };
     for (name, bytes, words) in [
         ("a.splat", Vec::new(), "0 bytes & 32 & empty"),
         ("a.spz", Vec::new(), "empty"),
@@ -465,18 +473,29 @@ fn files_as_they_should_not_be() {
             no(first, |s| s.rotation = Vec4::ZERO),
             "out of range",
         ),
+    ] {
+        assert_refused(name, &bytes, words);
+    }
+}
+
+#[test]
+fn gltf_files_as_they_should_not_be() {
+    let known = some_splats(3);
+    let gltf = |change: fn(&mut Value)| {
+        let mut document = gltf(&known, 1);
+        change(&mut document);
+        document.to_string().into_bytes()
+    };
+    for (bytes, words) in [
         (
-            "a.gltf",
             gltf(|d| d["accessors"][1]["type"] = json!("VEC3")),
             "accessor 1 & export",
         ),
         (
-            "a.gltf",
             gltf(|d| d["accessors"][3]["count"] = json!(2)),
             "OPACITY & 3 values",
         ),
         (
-            "a.gltf",
             gltf(|d| {
                 let attributes = d["meshes"][0]["primitives"][0]["attributes"].as_object_mut();
                 attributes
@@ -486,7 +505,6 @@ fn files_as_they_should_not_be() {
             "no 'KHR_gaussian_splatting:SH_DEGREE_1_COEF_2'",
         ),
         (
-            "a.gltf",
             gltf(|d| {
                 let extension = &mut d["meshes"][0]["primitives"][0]["extensions"];
                 extension["KHR_gaussian_splatting"]["colorSpace"] = json!("lin_rec709_display");
@@ -494,7 +512,6 @@ fn files_as_they_should_not_be() {
             "not drawn: splats whose colour space is lin_rec709_display",
         ),
         (
-            "a.gltf",
             gltf(|d| {
                 let primitive = &mut d["meshes"][0]["primitives"][0];
                 primitive["attributes"] = json!({"POSITION": 0});
@@ -504,15 +521,11 @@ fn files_as_they_should_not_be() {
             "not drawn: splats with the extension KHR_gaussian_splatting_compression_spz_2",
         ),
         (
-            "a.gltf",
             gltf(|d| d["nodes"][0]["scale"] = json!([0.0, 0.0, 0.0])),
             "scales it to nothing",
         ),
     ] {
-        let e = load(name, &bytes).map(|_| ()).expect_err(words);
-        for word in words.split(" & ") {
-            assert!(e.contains(word), "no '{word}' in: {e}");
-        }
+        assert_refused("a.gltf", &bytes, words);
     }
 }
 
