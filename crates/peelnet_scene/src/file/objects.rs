@@ -53,6 +53,13 @@ pub(super) fn place(
         shown.blend |= !is_said && ends.any(|color| color[3] < 1.0);
         materials.push(shown);
     }
+    if mesh.splats.is_some() {
+        let given = raw.material.given().into_iter();
+        for key in given.filter(|key| !matches!(*key, "color" | "alpha")) {
+            let what = format!("{field}.material.{key}: changes nothing of splats; leave it out");
+            loader.files.warn(loader.path, &what);
+        }
+    }
     let has = |map: fn(&Maps) -> bool| materials.iter().any(|m| map(&m.maps));
     for (key, is_used) in [
         ("normal_scale", has(|maps| maps.normal.is_some())),

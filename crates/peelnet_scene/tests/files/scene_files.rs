@@ -5,7 +5,7 @@ use crate::{
     load_files, ply, stl,
 };
 use glam::Vec3;
-use peelnet_scene::{Lighting, Material, Scene, SceneError};
+use peelnet_scene::{Blending, Lighting, Material, Scene, SceneError};
 use std::{
     cell::RefCell,
     io,
@@ -485,6 +485,31 @@ fn materials_of_files_in_scenes() {
     ];
     let warnings = load_files(&files).unwrap().warnings.join("\n");
     assert_says(&warnings, "is opaque");
+}
+
+/// Splats have a colour and an opacity, and no other key; where a scene has any, it blends in display space unless it says otherwise.
+#[test]
+fn splats_in_scenes() {
+    let object = "[[object]]\nmesh = { shape = 'splats', count = 9 }\nmaterial = { alpha = 0.5, color = [1, 0, 0], metallic = 1 }\n";
+    let of = |head: &str, object: &str| {
+        let text = format!("{head}\n{CAMERA}{object}");
+        load_files(&[("s.toml", text.as_bytes())]).unwrap()
+    };
+    let scene = of("", object);
+    let warnings = scene.warnings.join("\n");
+    assert_says(
+        &warnings,
+        "object 1.material.metallic: changes nothing of splats",
+    );
+    assert!(
+        !warnings.contains("alpha") && !warnings.contains("color"),
+        "{warnings}"
+    );
+    assert_eq!(scene.blending, Blending::Display);
+    assert_eq!(of("blending = 'linear'", object).blending, Blending::Linear);
+    let quad = "[[object]]\nmesh = { shape = 'quad' }\n";
+    assert_eq!(of("", quad).blending, Blending::Linear);
+    assert_eq!(of("blending = 'display'", quad).blending, Blending::Display);
 }
 
 /// What belongs to a map, where there is none.
