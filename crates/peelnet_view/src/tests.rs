@@ -112,30 +112,60 @@ fn every_method_has_its_controls() {
     }
 }
 
+/// Blending rounds to 11 bits in the viewer's 16-bit target, far less than one of 255 levels; a value at the border of two levels may then fall to
+/// the other side.
+const LEVELS: u8 = 1;
+
 /// The picture is that of `peelnet render`, but for the precision of its target.
+fn assert_shows(w: &mut Window, scene: &Scene) {
+    whole(w);
+    let shown = texels(w);
+    let app = w.state();
+    let renderer = Renderer::new(&app.gpu, scene).unwrap();
+    let options = MethodOptions::sized(app.size);
+    let mut prepared = renderer.method(&app.first.spec, options).unwrap();
+    let image = renderer.image(&mut prepared, &scene.views[0]).unwrap();
+    let want = image.image.to_srgb8();
+    let worst = shown.iter().zip(want.chunks_exact(3)).map(|(a, b)| {
+        let channels = a.iter().zip(b).map(|(a, b)| a.abs_diff(*b));
+        channels.max().unwrap()
+    });
+    assert!(worst.max().unwrap() <= LEVELS, "{}", app.first.spec);
+    assert_eq!(shown.len() * 3, want.len());
+}
+
 #[test]
 fn the_picture_is_the_renderers() {
-    /// Blending rounds to 11 bits in the viewer's 16-bit target, far less than one of 255 levels; a value at the border of two levels may
-    /// then fall to the other side.
-    const LEVELS: u8 = 1;
     for name in ["deep-medium", "mboit4", "abuffer", "kbuffer-4"] {
         let mut w = window("cups", name);
-        whole(&mut w);
-        let shown = texels(&mut w);
-        let app = w.state();
-        let scene = suite::load("cups").unwrap();
-        let renderer = Renderer::new(&app.gpu, &scene).unwrap();
-        let options = MethodOptions::sized(app.size);
-        let mut prepared = renderer.method(&name.parse().unwrap(), options).unwrap();
-        let image = renderer.image(&mut prepared, &scene.views[0]).unwrap();
-        let want = image.image.to_srgb8();
-        let worst = shown.iter().zip(want.chunks_exact(3)).map(|(a, b)| {
-            let channels = a.iter().zip(b).map(|(a, b)| a.abs_diff(*b));
-            channels.max().unwrap()
-        });
-        assert!(worst.max().unwrap() <= LEVELS, "{name}");
-        assert_eq!(shown.len() * 3, want.len());
+        assert_shows(&mut w, &suite::load("cups").unwrap());
     }
+}
+
+/// A file of splats is dropped onto the window. It blends in display space, and is not encoded for the display again.
+#[test]
+fn dropped_splats_are_shown_as_they_blend() {
+    let mut w = window("boxes", "splat");
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("two.splat");
+    let mut bytes = Vec::new();
+    for (x, color) in [(0.0f32, [200, 90, 40, 220]), (0.3, [30, 120, 220, 160])] {
+        let floats = [x, 0.2 * x, x, 0.4, 0.3, 0.1];
+        bytes.extend(floats.into_iter().flat_map(f32::to_le_bytes));
+        bytes.extend(color);
+        bytes.extend([255, 128, 160, 128]);
+    }
+    fs::write(&path, bytes).unwrap();
+    let file = std::sync::Arc::new(Dropped(path.clone()));
+    w.input_mut().dropped_files.push(file);
+    until(&mut w, "loaded", |app| {
+        app.stage
+            .as_ref()
+            .is_some_and(|stage| stage.scene.objects.len() == 1)
+    });
+    let scene = Scene::load(&path).unwrap();
+    assert_eq!(scene.blending, peelnet_scene::Blending::Display);
+    assert_shows(&mut w, &scene);
 }
 
 /// Each comparison shows what it says of two pictures that differ.
