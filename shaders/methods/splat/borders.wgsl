@@ -1,6 +1,7 @@
 // splat, between passes 1 and 2: the borders of the pixel's slabs, and the depth behind which nothing is seen.
 // Loops: 1: sixteen bins.
 import package::helpers::quantiles::around_of;
+import package::learned::weight::peelnet_even;
 import package::methods::splat::place::BINS;
 import package::scene::camera::Camera;
 
@@ -35,10 +36,10 @@ fn share_before(border: vec4f) -> vec4f {
 
 // The depth, 0 .. 1 of the frame's, of a place among quantiles: peelnet_place_among turned round.
 fn depth_of(place: f32, around: vec4f) -> f32 {
-    let shares = vec4f(0.06, 0.29, 0.3, 0.29);
-    let begin = vec4f(0.0, 0.06, 0.35, 0.65);
-    let parts = clamp((vec4f(place) - begin) / shares, vec4f(0.0), vec4f(1.0));
-    let last = clamp((place - 0.94) / 0.06, 0.0, 1.0);
+    let shares = peelnet_even();
+    let begin = vec4f(0.0, shares.xyz);
+    let parts = clamp((vec4f(place) - begin) / (shares - begin), vec4f(0.0), vec4f(1.0));
+    let last = clamp((place - shares.w) / (1.0 - shares.w), 0.0, 1.0);
     return dot(parts, around - vec4f(0.0, around.xyz)) + last * (1.0 - around.w);
 }
 

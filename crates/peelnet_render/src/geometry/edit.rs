@@ -25,9 +25,9 @@ impl SceneBuffers {
         world_from_object: glam::Mat4,
     ) -> Result<(), RenderError> {
         let moved = self.object(object)?;
-        let was_mirrored = Placement::new(moved, 0).mirrored;
+        let was_mirrored = Placement::from_object(moved).mirrored;
         moved.world_from_object = world_from_object;
-        let turned = Placement::new(moved, 0).mirrored != was_mirrored;
+        let turned = Placement::from_object(moved).mirrored != was_mirrored;
         if let Some(splats) = &self.splats {
             splats.place(&self.gpu, &self.scene, object);
         }
@@ -38,7 +38,7 @@ impl SceneBuffers {
             }
             let object = &self.scene.objects[object];
             let triangles = object.mesh.parts[part.place.1].triangles.clone();
-            let placement = Placement::new(object, 0);
+            let placement = Placement::from_object(object);
             let vertices: Vec<Vertex> = placement.vertices(triangles, number as u32).collect();
             let first = part.run.vertices.start as usize;
             self.gpu.write_at(&self.vertices, first, &vertices);
@@ -61,8 +61,8 @@ impl SceneBuffers {
             .splats
             .as_ref()
             .map_or(0, |all| all.first(part.place.0));
-        let placement = Placement::new(object, first_splat);
-        let attributes = placement.attributes(triangles, part.run.variant);
+        let placement = Placement::from_object(object);
+        let attributes = placement.attributes(triangles, part.run.variant, first_splat);
         if shares_anew {
             let numbers = placement.shared(triangles, &attributes, first);
             self.gpu.write_at(&self.shared, first, &numbers);

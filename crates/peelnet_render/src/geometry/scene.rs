@@ -116,7 +116,7 @@ impl SceneBuffers {
         let mut parts = Vec::new();
         for (number, object) in scene.objects.iter().enumerate() {
             let first_splat = splats.as_ref().map_or(0, |all| all.first(number));
-            let placement = Placement::new(object, first_splat);
+            let placement = Placement::from_object(object);
             let all = object.mesh.parts.iter().zip(&object.materials);
             for (part_number, (part, material)) in all.enumerate() {
                 let index = materials.len() as u32;
@@ -127,7 +127,7 @@ impl SceneBuffers {
                 let variant = MaterialFlags::new(material, object, lights);
                 let begin = vertices.len();
                 vertices.extend(placement.vertices(part.triangles.clone(), index));
-                let of_part = placement.attributes(&part.triangles, variant);
+                let of_part = placement.attributes(&part.triangles, variant, first_splat);
                 shared.extend(placement.shared(&part.triangles, &of_part, begin));
                 extend(&mut attributes, begin, of_part);
                 let mut buffers = PartBuffers {

@@ -117,6 +117,7 @@ pub(crate) fn unit_from_depth(far: f32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::splats::SplatData;
     use crate::shaders::naga;
     use peelnet_scene::NUMBERS;
     use std::fmt::Debug;
@@ -171,6 +172,10 @@ mod tests {
         let (module, _) = crate::shaders::validate("structs", &text, capabilities).expect("valid");
         assert_eq!(members(&module, "Light"), fields::<LightData>());
         assert_eq!(members(&module, "Camera"), fields::<CameraUniform>());
+        let shader = crate::shaders::link("scene::vertex", &["splat", "material"], &[]);
+        let text = shader.expect("links").text.clone();
+        let (splat, _) = crate::shaders::validate("splats", &text, capabilities).expect("valid");
+        assert_eq!(members(&splat, "scene_splat_Splat"), fields::<SplatData>());
         let (mut material, size) = fields::<MaterialData>();
         let (_, begin) = material.pop().expect("numbers are the last");
         let mut numbers: Vec<_> = NUMBERS.iter().filter(|n| n.place.is_some()).collect();

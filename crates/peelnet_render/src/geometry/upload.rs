@@ -56,19 +56,16 @@ pub(crate) fn push_run(runs: &mut Vec<DrawRun>, run: DrawRun) {
 pub(crate) struct Placement<'a> {
     object: &'a Object,
     normal_matrix: glam::Mat3,
-    /// Number of its first splat in the scene, where it is one of splats.
-    first_splat: u32,
     /// Whether it is turned inside out.
     pub mirrored: bool,
 }
 
 impl<'a> Placement<'a> {
-    pub fn new(object: &'a Object, first_splat: u32) -> Self {
+    pub fn from_object(object: &'a Object) -> Self {
         let linear = glam::Mat3::from_mat4(object.world_from_object);
         Self {
             object,
             normal_matrix: linear.inverse().transpose(),
-            first_splat,
             mirrored: linear.determinant() < 0.0,
         }
     }
@@ -94,8 +91,14 @@ impl<'a> Placement<'a> {
         })
     }
 
-    /// What a variant reads of these vertices, in the order of [`ATTRIBUTES`]; empty where it reads nothing.
-    pub fn attributes(&self, triangles: &Range<usize>, variant: MaterialFlags) -> Attributes {
+    /// What a variant reads of these vertices, in the order of [`ATTRIBUTES`]; empty where it reads nothing. `first_splat` is the number of the
+    /// object's first splat in the scene.
+    pub fn attributes(
+        &self,
+        triangles: &Range<usize>,
+        variant: MaterialFlags,
+        first_splat: u32,
+    ) -> Attributes {
         let mesh = &self.object.mesh;
         let order = self.order();
         let mut all: Attributes = Default::default();
@@ -129,7 +132,7 @@ impl<'a> Placement<'a> {
         if variant.contains(MaterialFlags::SPLAT) {
             let numbers = self.indices(triangles.clone());
             // The bits of whole numbers, as all others are floats.
-            splats.extend(numbers.map(|i| f32::from_bits(self.first_splat + i as u32)));
+            splats.extend(numbers.map(|i| f32::from_bits(first_splat + i as u32)));
         }
         all
     }
@@ -214,7 +217,7 @@ mod tests {
         let points = points.map(|[x, y]| glam::Vec3::new(x, y, 0.0));
         let mut object = object(points.to_vec(), vec![[0, 1, 2], [2, 1, 3]]);
         let shared = |object: &Object, attributes: &Attributes| {
-            Placement::new(object, 0).shared(&(0..2), attributes, 30)
+            Placement::from_object(object).shared(&(0..2), attributes, 30)
         };
         let mut attributes: Attributes = Default::default();
         assert_eq!(shared(&object, &attributes), [30, 31, 32, 32, 31, 35]);
@@ -245,7 +248,7 @@ mod tests {
             ]
         };
         attributes[0] = (0..180).flat_map(uv).collect();
-        let numbers = Placement::new(&object, 0).shared(&(0..60), &attributes, 0);
+        let numbers = Placement::from_object(&object).shared(&(0..60), &attributes, 0);
         for (corner, &number) in numbers.iter().enumerate() {
             let number = number as usize;
             assert_eq!((number % 3, uv(number)), (corner % 3, uv(corner)));

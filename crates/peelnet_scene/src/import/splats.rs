@@ -110,6 +110,13 @@ pub(super) fn coefficient(color: f32) -> f32 {
     (color - 0.5) / CONSTANT_HARMONIC
 }
 
+/// A unit quaternion of three of its elements and 0 in the place of the largest, which is not negative.
+fn with_largest(mut elements: [f32; 4], largest: usize) -> [f32; 4] {
+    let squares: f32 = elements.iter().map(|x| x * x).sum();
+    elements[largest] = (1.0 - squares).max(0.0).sqrt();
+    elements
+}
+
 /// Three numbers that `number` returns for the axes or channels.
 fn three(number: impl Fn(usize) -> f32) -> Vec3 {
     Vec3::new(number(0), number(1), number(2))

@@ -1,7 +1,7 @@
 //! Splats in PLY files: as Kerbl et al. (INRIA 2023) write them, and compressed (PlayCanvas, SuperSplat), where blocks of 256 splats share their
 //! ranges of numbers.
 
-use super::{Cloud, MAX_DEGREE, Splat, coefficient, three};
+use super::{Cloud, MAX_DEGREE, Splat, coefficient, three, with_largest};
 use crate::{
     files::Files,
     import::{
@@ -223,11 +223,9 @@ fn unpacked([position, rotation, scale, color]: [u32; 4], ranges: &Ranges) -> (S
     let largest = (rotation >> 30) as usize;
     let mut wxyz = [0.0; 4];
     let others = [20, 10, 0].map(|shift| (part(rotation >> shift, 10) - 0.5) * 2.0 * FRAC_1_SQRT_2);
-    let squares: f32 = others.iter().map(|x| x * x).sum();
     let places = (0..4).filter(|k| *k != largest);
     places.zip(others).for_each(|(k, x)| wxyz[k] = x);
-    wxyz[largest] = (1.0 - squares).max(0.0).sqrt();
-    let [w, x, y, z] = wxyz;
+    let [w, x, y, z] = with_largest(wxyz, largest);
     let splat = Splat {
         center: three_of(position, [21, 11, 0], 0),
         scale: three_of(scale, [21, 11, 0], 3).map(f32::exp),

@@ -2,7 +2,7 @@
 //!
 //! Read here: the crates for it decompress whatever a file holds before they look at its header.
 
-use super::{Cloud, MAX_DEGREE, Splat, three};
+use super::{Cloud, MAX_DEGREE, Splat, three, with_largest};
 use crate::{
     files::Files,
     import::surface::{Fault, in_file},
@@ -151,7 +151,5 @@ fn smallest_three(mut bits: u32) -> Vec4 {
         rotation[k] = if bits & 512 == 0 { size } else { -size };
         bits >>= 10;
     }
-    let squares: f32 = rotation.iter().map(|x| x * x).sum();
-    rotation[largest] = (1.0 - squares).max(0.0).sqrt();
-    Vec4::from_array(rotation)
+    Vec4::from_array(with_largest(rotation, largest))
 }
