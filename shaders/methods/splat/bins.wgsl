@@ -28,5 +28,5 @@ fn fragment_main(surface: Surface) -> Bins {
     @else let place = place_of(surface.depth_linear, quantiles, bilinear, surface.position.xy);
     let bin = min(floor(BINS * place), BINS - 1.0);
     let b = absorbance(opacity(surface));
-    return Bins(in_channels(b, bin, 0.0), in_channels(b, bin, 4.0), in_channels(b, bin, 8.0), in_channels(b, bin, 12.0));
+    return Bins(b * in_channels(bin, 0.0), b * in_channels(bin, 4.0), b * in_channels(bin, 8.0), b * in_channels(bin, 12.0));
 }

@@ -1,43 +1,34 @@
-// splat, pass 3: eq 6 with the transmittance that follows from the slabs in front and from the mean depth of what shares the fragment's.
-// Variants: none | packed | tinted
+// splat, pass 3: eq 6 with the transmittance that follows from the absorbance around the knots, without the fragment's own.
+// Variants: none | tinted
 import package::helpers::absorbance::absorbance;
-import package::helpers::guards::WEIGHT_FLOOR;
-import package::helpers::sums::{Sums, sums_of};
-import package::methods::splat::place::{place_of, slab_of};
-@if(tinted) import package::scene::shade::covering;
+import package::helpers::estimated::{Sums, sums_of};
+import package::helpers::guards::HALF_MAX;
+import package::methods::splat::place::{coordinate_of, in_channels, place_of};
 import package::scene::shade::shade;
 import package::scene::surface::Surface;
 import package::scene::visible::visible;
 
 @group(1) @binding(0) var quantiles: texture_2d<f32>;
 @group(1) @binding(1) var bilinear: sampler;
-@group(1) @binding(2) var borders_near: texture_2d<f32>;
-@group(1) @binding(3) var borders_far: texture_2d<f32>;
-@group(1) @binding(4) var ends_of_pixel: texture_2d<f32>;
-@group(1) @binding(5) var absorbances_near: texture_2d<f32>;
-@group(1) @binding(6) var absorbances_far: texture_2d<f32>;
-@group(1) @binding(7) var firsts_near: texture_2d<f32>;
-@group(1) @binding(8) var firsts_far: texture_2d<f32>;
+@group(1) @binding(2) var knots_a: texture_2d<f32>;
+@group(1) @binding(3) var knots_b: texture_2d<f32>;
+@group(1) @binding(4) var knots_c: texture_2d<f32>;
+@group(1) @binding(5) var knots_d: texture_2d<f32>;
+@group(1) @binding(6) var absorbances_a: texture_2d<f32>;
+@group(1) @binding(7) var absorbances_b: texture_2d<f32>;
+@group(1) @binding(8) var absorbances_c: texture_2d<f32>;
+@group(1) @binding(9) var absorbances_d: texture_2d<f32>;
 
-// The channels of slabs before this one, together.
-fn before(near: vec4f, far: vec4f, number: f32) -> f32 {
-    let numbers = vec4f(0.0, 1.0, 2.0, 3.0);
-    let first = select(vec4f(0.0), near, numbers < vec4f(number));
-    let second = select(vec4f(0.0), far, numbers + 4.0 < vec4f(number));
-    return dot(first + second, vec4f(1.0));
+// The share of what lies around each of four knots, from a first one, in front of a coordinate: its density falls linearly from the knot to its
+// neighbours, and the share is the integral of that.
+fn shares_in_front(coordinate: f32, first: f32) -> vec4f {
+    let d = clamp(vec4f(coordinate - first) - vec4f(0.0, 1.0, 2.0, 3.0), vec4f(-1.0), vec4f(1.0));
+    return 0.5 + d - 0.5 * d * abs(d);
 }
 
-fn channel(near: vec4f, far: vec4f, number: f32) -> f32 {
-    let numbers = vec4f(0.0, 1.0, 2.0, 3.0);
-    let first = select(vec4f(0.0), near, numbers == vec4f(number));
-    let second = select(vec4f(0.0), far, numbers + 4.0 == vec4f(number));
-    return dot(first + second, vec4f(1.0));
-}
-
-// The share of what lies in a slab in front of a place in it, where its density is linear in depth, as steep as its mean depth asks for.
-fn share_in_front(place: f32, mean: f32) -> f32 {
-    let slope = clamp(3.0 - 6.0 * mean, -1.0, 1.0);
-    return place + slope * (place - place * place);
+// What others have around four knots. Sums of 16-bit targets may become infinite.
+fn others(sums: texture_2d<f32>, pixel: vec2u, own: vec4f) -> vec4f {
+    return max(min(textureLoad(sums, pixel, 0), vec4f(HALF_MAX)) - own, vec4f(0.0));
 }
 
 @fragment
@@ -48,17 +39,22 @@ fn fragment_main(surface: Surface) -> Sums {
     let pixel = vec2u(surface.position.xy);
     let color = shade(surface);
     let place = place_of(surface.depth_linear, quantiles, bilinear, surface.position.xy);
-    let ends = textureLoad(ends_of_pixel, pixel, 0).xy;
-    let slab = slab_of(place, textureLoad(borders_near, pixel, 0), textureLoad(borders_far, pixel, 0), ends);
-    // Sums of 16-bit targets may become infinite.
-    let near = min(textureLoad(absorbances_near, pixel, 0), vec4f(65504.0));
-    let far = min(textureLoad(absorbances_far, pixel, 0), vec4f(65504.0));
-    let first = channel(textureLoad(firsts_near, pixel, 0), textureLoad(firsts_far, pixel, 0), slab.number);
+    let knots = mat4x4f(
+        textureLoad(knots_a, pixel, 0),
+        textureLoad(knots_b, pixel, 0),
+        textureLoad(knots_c, pixel, 0),
+        textureLoad(knots_d, pixel, 0),
+    );
+    let at = coordinate_of(place, knots);
     let b = absorbance(color.a);
-    let others = max(channel(near, far, slab.number) - b, 0.0);
-    let mean = clamp((first - b * slab.inside) / max(others, 1e-6), 0.0, 1.0);
-    let in_front = before(near, far, slab.number) + others * share_in_front(slab.inside, mean);
-    let weight = clamp(exp(-in_front), WEIGHT_FLOOR, 1.0);
-    @if(tinted) return sums_of(color * weight, covering(surface));
-    @else return sums_of(color * weight, vec3f(color.a));
+    // What lies around the first knot and the last is on one side of them.
+    var first = shares_in_front(at, 0.0);
+    first.x = 2.0 * first.x - 1.0;
+    var last = shares_in_front(at, 12.0);
+    last.w *= 2.0;
+    var in_front = dot(others(absorbances_a, pixel, b * in_channels(at, 0.0)), first);
+    in_front += dot(others(absorbances_b, pixel, b * in_channels(at, 4.0)), shares_in_front(at, 4.0));
+    in_front += dot(others(absorbances_c, pixel, b * in_channels(at, 8.0)), shares_in_front(at, 8.0));
+    in_front += dot(others(absorbances_d, pixel, b * in_channels(at, 12.0)), last);
+    return sums_of(surface, color, exp(-in_front));
 }

@@ -398,13 +398,6 @@ impl<'a> Passes<'a> {
         }
     }
 
-    /// Drops what lies behind a depth from the pass before the resolve.
-    pub fn limit_gather(&mut self, depth: Option<Handle>) {
-        if let [.., gather, _] = self.passes.as_mut_slice() {
-            gather.depth(depth);
-        }
-    }
-
     fn find(&self, name: &str) -> Option<(Handle, &Target)> {
         let all = self.resources.iter().enumerate();
         let mut targets = all.filter_map(|(k, resource)| match resource {

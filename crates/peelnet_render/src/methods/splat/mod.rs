@@ -1,13 +1,13 @@
-//! `splat`: slabs over the visible range, for pixels of hundreds of layers, of which the nearest are seen: Gaussian splats, and surfaces among them.
+//! `splat`: absorbance over the visible range, for pixels of hundreds of layers, of which the nearest are seen: Gaussian splats, and surfaces among them.
 //!
 //! A pass over one pixel in 64 says where around each pixel most is seen. Sixteen bins of absorbance among those depths, of every pixel, say where
-//! in the pixel that is: it is cut into eight slabs, of which each is seen less than the one before, and behind the last one a depth test drops
-//! all fragments before they are shaded. Of each slab absorbance and mean depth are kept, and the density between its borders is taken for linear.
-//! Nothing is sorted and nothing is learned.
+//! in the pixel that is. There lie sixteen knots, of which less is seen between each and the next one, and behind the last a depth test drops all
+//! fragments before they are shaded. Absorbance is summed around knots: a fragment counts for the two beside it, more for the nearer, so that
+//! nothing jumps when it moves from one interval to the next. Nothing is sorted and nothing is learned.
 
 mod expectations;
 
-use crate::methods::{prelude::*, wboit};
+use crate::{methods::prelude::*, passes::SUMS};
 use peelnet_core::methods::{quantiles::TILE, slabs::Layout};
 use peelnet_model::inputs::slab_surroundings;
 
@@ -15,19 +15,14 @@ pub(super) const METHOD: Method = Method {
     expectations: expectations::METHOD,
     ..Method::new(
         "splat",
-        "eight slabs over a pixel's visible range, which sixteen bins find: for Gaussian splats",
+        "absorbance around sixteen knots of a pixel's visible range: for Gaussian splats",
         passes,
     )
 };
 
-/// Four of sixteen values of a pixel: first its bins, then the sums of its slabs.
+/// Four of sixteen values of a pixel: first its bins, then the sums around its knots.
 const fn four(name: &'static str) -> Target {
     Target::half(name, 4, Blend::Add)
-}
-
-/// Written once, in 8 bits.
-const fn bytes(name: &'static str, channels: u32) -> Target {
-    Target::half(name, channels, Blend::AddBytes)
 }
 
 fn passes(p: &mut Passes<'_>) {
@@ -47,32 +42,35 @@ fn passes(p: &mut Passes<'_>) {
     p.geometry("methods::splat::bins", Needs::OPACITY)
         .reads([quantiles])
         .writes(bins);
-    let borders = [
-        bytes("borders_near", 4),
-        bytes("borders_far", 4),
-        bytes("ends_of_pixel", 2),
-    ];
-    let borders = p.targets(borders);
+    let knots = ["knots_a", "knots_b", "knots_c", "knots_d"];
+    // Written once, in 8 bits.
+    let knots = knots.map(|name| p.target(Target::half(name, 4, Blend::AddBytes)));
     let limit = Some(p.depth());
-    p.pixels("methods::splat::borders")
+    p.pixels("methods::splat::knots")
         .reads([quantiles])
         .reads(bins)
-        .writes(borders.iter().copied())
+        .writes(knots)
         .depth(limit);
-    // What is kept of the slabs takes the place of the bins.
-    let kept = [
-        "absorbances_near",
-        "absorbances_far",
-        "firsts_near",
-        "firsts_far",
+    // The sums take the place of the bins.
+    let sums = [
+        "absorbances_a",
+        "absorbances_b",
+        "absorbances_c",
+        "absorbances_d",
     ];
-    let kept = [0, 1, 2, 3].map(|k| p.again(bins[k], four(kept[k])));
+    let sums = [0, 1, 2, 3].map(|k| p.again(bins[k], four(sums[k])));
     p.geometry("methods::splat::statistics", Needs::OPACITY)
         .reads([quantiles])
-        .reads(borders.iter().copied())
-        .writes(kept)
+        .reads(knots)
+        .writes(sums)
         .depth(limit);
-    let read = [quantiles].into_iter().chain(borders).chain(kept);
-    wboit::sums(p, "methods::splat::gather", &[], read);
-    p.limit_gather(limit);
+    let colors = p.target(SUMS);
+    p.geometry("methods::splat::gather", Needs::COLOR)
+        .reads([quantiles])
+        .reads(knots)
+        .reads(sums)
+        .writes([colors])
+        .depth(limit);
+    p.resolve("methods::splat::resolve", [colors]).reads(sums);
+    p.tint();
 }
