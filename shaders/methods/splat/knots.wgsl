@@ -1,5 +1,5 @@
 // splat, between passes 1 and 2: the pixel's knots, and the depth behind which nothing is seen.
-// Loops: 3: sixteen bins; again, and four parts of each.
+// Loops: 4: sixteen bins; again, four parts of each, and four knots at once.
 import package::helpers::quantiles::around_of;
 import package::learned::weight::peelnet_even;
 import package::methods::splat::place::BINS;
@@ -76,15 +76,17 @@ fn fragment_main(@builtin(position) position: vec4f) -> Knots {
     var seen = mat4x4f();
     var through = 1.0;
     var begin = BINS;
+    // The end of a bin, and not a depth in it: what hides the rest may be one surface at that end.
+    var end = BINS;
     for (var k = 0u; k < 16u; k++) {
         let behind = through * exp(-bins[k / 4u][k % 4u]);
         seen[k / 4u][k % 4u] = through - behind;
         begin = select(begin, min(begin, f32(k)), behind < through);
+        end = select(end, min(end, f32(k + 1u)), behind <= UNSEEN);
         through = behind;
     }
     let shares = (1.0 - through) * mat4x4f(shares_before(0.0), shares_before(4.0), shares_before(8.0), shares_before(12.0));
     var knots = mat4x4f();
-    var end = BINS;
     var before = 0.0;
     var near = seen[0].x;
     for (var k = 0u; k < 16u; k++) {
@@ -100,7 +102,6 @@ fn fragment_main(@builtin(position) position: vec4f) -> Knots {
             for (var four = 0u; four < 4u; four++) {
                 knots[four] += clamp((shares[four] - vec4f(before)) / step, vec4f(0.0), vec4f(1.0));
             }
-            end = select(end, min(end, f32(k) + x), 1.0 - now <= UNSEEN);
             before = now;
         }
         near = far;

@@ -2,11 +2,11 @@
 
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
-import { readFileSync } from 'node:fs';
+import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { OUT, PATIENCE, ROOT, open } from './browser.mjs';
-import { OBJ, square } from './files.mjs';
+import { AMONG, OBJ, cloud, square } from './files.mjs';
 
 const BINARY = process.env.PEELNET_BINARY ?? join(ROOT, 'target/release/peelnet');
 const METHODS = ['abuffer', 'depth-peel', 'mboit4', 'deep-medium'];
@@ -26,9 +26,9 @@ let browser;
 before(async () => browser = await open());
 after(() => browser?.close());
 
-const draws = (method, name) => {
+const draws = (method, name, scene = 'cups', view = '1') => {
   const path = join(OUT, name);
-  execFileSync(BINARY, ['render', 'cups', '--quiet', '--force', '--view', '1', '--size', '320x240', '--method', method, '--out', path], { stdio: 'inherit' });
+  execFileSync(BINARY, ['render', scene, '--quiet', '--force', '--view', view, '--size', '320x240', '--method', method, '--out', path], { stdio: 'inherit' });
   return `/out/${name}`;
 };
 
@@ -147,6 +147,28 @@ test('dropped files open; what is none leaves the view as it is', async () => {
   await page.method('deep-small');
   await page.drop({ 'own.safetensors': model });
   await page.whole();
+  assert.deepEqual(page.errors(), []);
+  await page.close();
+});
+
+test('dropped splats, and panes among them, are what peelnet render draws', async () => {
+  const page = await browser.page(VIEW + 'abuffer');
+  const files = { 'cloud.splat': cloud(), 'among.toml': AMONG };
+  for (const [name, content] of Object.entries(files)) writeFileSync(join(OUT, name), content);
+  for (const [name, dropped] of [['cloud.splat', { 'cloud.splat': cloud() }], ['among', files]]) {
+    await page.drop(dropped);
+    await page.tab.waitForFunction(n => window.peelnet.page.scene() === n && window.peelnet.page.is_whole(), { timeout: PATIENCE }, name);
+    for (const method of ['abuffer', 'splat', 'painter-triangle']) {
+      const native = draws(method, `native-${name}-${method}.png`, join(OUT, name === 'among' ? 'among.toml' : name), '0');
+      await page.method(method);
+      await page.save(`page-${name}-${method}.png`);
+      const { most, mean, beyond } = await page.differences(native);
+      console.log(`    ${name}, ${method}: mean ${mean.toFixed(4)}/255, ${(100 * beyond).toFixed(3)} % of the pixels differ by more than 1, at most ${most}`);
+      assert.ok(mean <= MEAN, `${name}, ${method}: ${mean}`);
+      assert.ok(beyond <= BESIDE_EDGES, `${name}, ${method}: ${beyond}`);
+    }
+  }
+  await page.tab.evaluate(() => localStorage.clear());
   assert.deepEqual(page.errors(), []);
   await page.close();
 });

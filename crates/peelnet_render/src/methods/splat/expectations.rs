@@ -8,8 +8,7 @@ pub(super) const METHOD: Expectations = Expectations {
             "high-alpha deep wide-range apart lines",
             "what lies behind the depth at which 1/255 of the light is left is not drawn, and its coverage is missing",
         ),
-        KnownFailure::unsettled(Property::Order, "near-overflow"),
-        KnownFailure::unsettled(Property::Order, "lines").elsewhere(),
+        KnownFailure::unsettled(Property::Order, "near-overflow wide-range lines"),
         KnownFailure::new(
             Property::Scale,
             "passing",
