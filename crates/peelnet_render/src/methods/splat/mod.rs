@@ -51,6 +51,10 @@ fn passes(p: &mut Passes<'_>) {
         .reads(bins)
         .writes(knots)
         .depth(limit);
+    let total = p.target(Target::half("zeroth", 1, Blend::Add));
+    p.pixels("methods::splat::total")
+        .reads(bins)
+        .writes([total]);
     // The sums take the place of the bins.
     let sums = [
         "absorbances_a",
@@ -71,6 +75,6 @@ fn passes(p: &mut Passes<'_>) {
         .reads(sums)
         .writes([colors])
         .depth(limit);
-    p.resolve("methods::splat::resolve", [colors]).reads(sums);
+    p.resolve("methods::mboit::four::resolve", [colors, total]);
     p.tint();
 }
