@@ -23,7 +23,7 @@ const COMPARED_METHODS: &str = "abuffer,linked-list,painter-triangle,wboit-eq9,w
 const APART_METHODS: &str = "abuffer,wboit-eq9,mboit4,mboit6,wavelet-3:bounds=pixel,bins-8,bins-16,avboit,kbuffer-4,slabs:keep=small,slabs:keep=medium,slabs,deep-anchored-medium,deep-small,deep-medium,deep-large,deep-medium:range=boxes,deep-medium:range=frame,one,one-wide,deep-one,deep-one-wide,deep-one:range=last,deep-one-wide:range=last,deep-one:range=frame,deep-one-wide:range=frame";
 
 /// What splats are drawn with: sorted, by moments and bins, by slabs.
-const SPLAT_METHODS: &str = "abuffer,linked-list,painter-object,painter-triangle,painter-object:sort=off,wboit-eq9,mboit4,bins-16,kbuffer-8,stochastic-16,deep-medium,deep-large,splat";
+const SPLAT_METHODS: &str = "abuffer,painter-object,painter-triangle,painter-object:sort=off,wboit-eq9,mboit4,bins-16,kbuffer-8,stochastic-16,deep-medium,deep-large,splat";
 
 /// Commands of peelnet whose results are kept: the name, the command without `--out`, in which names in angle brackets stand for what
 /// [`filled`] puts there, and the files of its output that are kept; where none are, what it prints is, as JSON.
@@ -46,7 +46,7 @@ const STEPS: &str = "
     splats | bench data/splats/cloud.toml --size 640x480 --frames 3 --methods <splats>,painter-triangle:sort=gpu | results.json.xz table.md
     splats-cards | bench data/splats/cloud-cards.toml --size 640x480 --frames 3 --methods <splats> | results.json.xz table.md
     splats-small | bench data/splats/cloud.toml data/splats/cloud-cards.toml --size 256x192 --frames 0 --methods <splats> | results.json.xz table.md
-    splats-path | bench path data/splats/cloud.toml data/splats/cloud-cards.toml --size 256x192 --frames 24 --methods <splats> | path.csv path.md path-change.svg
+    splats-path | bench path data/splats/cloud.toml data/splats/cloud-cards.toml --size 256x192 --frames 24 --methods painter-triangle,mboit4,deep-large,splat | path.csv path.md path-change.svg
     effects | bench effects --size 512x384 --frames 9 | effects.md effects-layers.svg
     scaling | bench scaling --frames 3 | scaling.md scaling-fragments.svg scaling-pixels.svg scaling-triangles.svg
     thesis-full | run --full --size 512x384 | results.json.xz table.md

@@ -17,6 +17,11 @@ const VIEW = '?scene=cups&view=1&bare=1&method=';
 const BESIDE_EDGES = 0.005;
 // Mean difference, steps: far below the rounding to whole ones.
 const MEAN = 0.1;
+// The same where a pixel's forty layers are added up in half floats, which SwiftShader rounds to nearest and lavapipe towards zero: half a step of
+// 2^-11 each, 2.5 steps of 255 together at most. Colours and weights err alike, and their quotient by far less: a fifth of that on average.
+const MEAN_OF_SUMS = 0.5;
+// And the pixels where it is more than a step, those beside edges among them.
+const BEYOND_OF_SUMS = 0.02;
 
 // What an allocator's free lists may still grow by, MiB: 4 KiB a frame left behind in 1000 frames would be more.
 const FRAGMENTS = 2;
@@ -152,20 +157,21 @@ test('dropped files open; what is none leaves the view as it is', async () => {
 });
 
 test('dropped splats, and panes among them, are what peelnet render draws', async () => {
-  const page = await browser.page(VIEW + 'abuffer');
+  const page = await browser.page(VIEW + 'wboit-eq9');
   const files = { 'cloud.splat': cloud(), 'among.toml': AMONG };
   for (const [name, content] of Object.entries(files)) writeFileSync(join(OUT, name), content);
-  for (const [name, dropped] of [['cloud.splat', { 'cloud.splat': cloud() }], ['among', files]]) {
+  for (const [name, dropped] of [['cloud.splat', { 'cloud.splat': cloud() }], ['among.toml', files]]) {
     await page.drop(dropped);
     await page.tab.waitForFunction(n => window.peelnet.page.scene() === n && window.peelnet.page.is_whole(), { timeout: PATIENCE }, name);
     for (const method of ['abuffer', 'splat', 'painter-triangle']) {
-      const native = draws(method, `native-${name}-${method}.png`, join(OUT, name === 'among' ? 'among.toml' : name), '0');
+      const native = draws(method, `native-${name}-${method}.png`, join(OUT, name), '0');
       await page.method(method);
       await page.save(`page-${name}-${method}.png`);
       const { most, mean, beyond } = await page.differences(native);
       console.log(`    ${name}, ${method}: mean ${mean.toFixed(4)}/255, ${(100 * beyond).toFixed(3)} % of the pixels differ by more than 1, at most ${most}`);
-      assert.ok(mean <= MEAN, `${name}, ${method}: ${mean}`);
-      assert.ok(beyond <= BESIDE_EDGES, `${name}, ${method}: ${beyond}`);
+      const [most_mean, most_beyond] = method === 'abuffer' ? [MEAN, BESIDE_EDGES] : [MEAN_OF_SUMS, BEYOND_OF_SUMS];
+      assert.ok(mean <= most_mean, `${name}, ${method}: ${mean}`);
+      assert.ok(beyond <= most_beyond, `${name}, ${method}: ${beyond}`);
     }
   }
   await page.tab.evaluate(() => localStorage.clear());
