@@ -379,9 +379,9 @@ fn exact_methods_agree_on_splats() {
 /// What is asked: the mean squared error of what is shown, of 40 dB.
 const ASKED: f64 = 1e-4;
 
-/// Where many layers lie in front of others, slabs over the pixel's own range find what is seen, and without that they do not.
+/// Where many layers lie in front of others, a method that looks for what is seen in each pixel does far better than one that does not.
 #[test]
-fn slabs_over_the_visible_range_show_splats() {
+fn knots_over_the_visible_range_show_splats() {
     let gpu = gpu();
     let scene = peelnet_scene::Scene::from_bytes("cloud.toml", |_| {
         Ok(b"

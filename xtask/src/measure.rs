@@ -22,7 +22,7 @@ const COMPARED_METHODS: &str = "abuffer,linked-list,painter-triangle,wboit-eq9,w
 /// What is judged with a surface apart from all others.
 const APART_METHODS: &str = "abuffer,wboit-eq9,mboit4,mboit6,wavelet-3:bounds=pixel,bins-8,bins-16,avboit,kbuffer-4,slabs:keep=small,slabs:keep=medium,slabs,deep-anchored-medium,deep-small,deep-medium,deep-large,deep-medium:range=boxes,deep-medium:range=frame,one,one-wide,deep-one,deep-one-wide,deep-one:range=last,deep-one-wide:range=last,deep-one:range=frame,deep-one-wide:range=frame";
 
-/// What splats are drawn with: sorted, by moments and bins, by slabs.
+/// What splats are drawn with: exactly, sorted, by moments, by bins, by networks for surfaces, and by the method for splats.
 const SPLAT_METHODS: &str = "abuffer,painter-object,painter-triangle,painter-object:sort=off,wboit-eq9,mboit4,bins-16,kbuffer-8,stochastic-16,deep-medium,deep-large,splat";
 
 /// Commands of peelnet whose results are kept: the name, the command without `--out`, in which names in angle brackets stand for what
