@@ -4,14 +4,20 @@ import numpy as np
 import peelnet
 import pytest
 
-from conftest import SIZE
+from conftest import ROOT, SIZE
 
 
-@pytest.mark.parametrize("method", ["abuffer", "mboit4", "deep-medium", "wboit-eq9:targets=f16"])
-def test_the_picture_is_the_command_s(command, tmp_path, method):
+SPLATS = ROOT / "data/splats/cloud-cards.toml"
+
+
+@pytest.mark.parametrize(
+    "scene, method",
+    [("cups", "abuffer"), ("cups", "mboit4"), ("cups", "deep-medium"), ("cups", "wboit-eq9:targets=f16"), (SPLATS, "splat")],
+)
+def test_the_picture_is_the_command_s(command, tmp_path, scene, method):
     path = tmp_path / "a.npy"
-    command("render", "cups", "--method", method, "--size", "64x48", "--view", 1, "--out", path)
-    image = peelnet.render("cups", method, size=SIZE, view=1)
+    command("render", scene, "--method", method, "--size", "64x48", "--view", 1, "--out", path)
+    image = peelnet.render(scene, method, size=SIZE, view=1)
     assert image.dtype == np.float32 and image.shape == (48, 64, 4)
     np.testing.assert_array_equal(image, np.load(path))
     assert image[..., 3].max() > 0.1, "nothing is covered"
