@@ -3,7 +3,7 @@
 import package::helpers::absorbance::absorbance;
 import package::helpers::estimated::{Sums, sums_of};
 import package::helpers::guards::HALF_MAX;
-import package::methods::splat::place::{coordinate_of, in_channels, place_of};
+import package::methods::splat::place::{coordinate_of, in_channels, place_of, sixteen};
 import package::scene::shade::shade;
 import package::scene::surface::Surface;
 import package::scene::visible::visible;
@@ -39,12 +39,7 @@ fn fragment_main(surface: Surface) -> Sums {
     let pixel = vec2u(surface.position.xy);
     let color = shade(surface);
     let place = place_of(surface.depth_linear, quantiles, bilinear, surface.position.xy);
-    let knots = mat4x4f(
-        textureLoad(knots_a, pixel, 0),
-        textureLoad(knots_b, pixel, 0),
-        textureLoad(knots_c, pixel, 0),
-        textureLoad(knots_d, pixel, 0),
-    );
+    let knots = sixteen(knots_a, knots_b, knots_c, knots_d, pixel);
     let at = coordinate_of(place, knots);
     let b = absorbance(color.a);
     // What lies around the first knot and the last is on one side of them.

@@ -2,7 +2,7 @@
 // Loops: 4: sixteen bins; again, four parts of each, and four knots at once.
 import package::helpers::quantiles::around_of;
 import package::learned::weight::peelnet_even;
-import package::methods::splat::place::BINS;
+import package::methods::splat::place::{BINS, sixteen};
 import package::scene::camera::Camera;
 
 @group(0) @binding(0) var<uniform> camera: Camera;
@@ -67,12 +67,7 @@ fn window_depth_of(depth: f32) -> f32 {
 @fragment
 fn fragment_main(@builtin(position) position: vec4f) -> Knots {
     let pixel = vec2u(position.xy);
-    let bins = mat4x4f(
-        textureLoad(bins_a, pixel, 0),
-        textureLoad(bins_b, pixel, 0),
-        textureLoad(bins_c, pixel, 0),
-        textureLoad(bins_d, pixel, 0),
-    );
+    let bins = sixteen(bins_a, bins_b, bins_c, bins_d, pixel);
     var seen = mat4x4f();
     var through = 1.0;
     var begin = BINS;

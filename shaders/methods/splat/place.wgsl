@@ -14,6 +14,11 @@ fn place_of(depth_linear: f32, quantiles: texture_2d<f32>, bilinear: sampler, po
     return peelnet_place_among(0.5 * zeta_of(depth_linear) + 0.5, around);
 }
 
+// Sixteen values of a pixel, of four textures.
+fn sixteen(a: texture_2d<f32>, b: texture_2d<f32>, c: texture_2d<f32>, d: texture_2d<f32>, pixel: vec2u) -> mat4x4f {
+    return mat4x4f(textureLoad(a, pixel, 0), textureLoad(b, pixel, 0), textureLoad(c, pixel, 0), textureLoad(d, pixel, 0));
+}
+
 // How many of four intervals lie in front of a place, of that in which it is the part.
 fn passed(place: f32, begins: vec4f, ends: vec4f) -> f32 {
     let parts = (vec4f(place) - begins) / max(ends - begins, vec4f(LEAST));

@@ -1,6 +1,6 @@
 // splat, pass 2: the absorbance around each knot. What lies behind the last one is not drawn.
 import package::helpers::absorbance::absorbance;
-import package::methods::splat::place::{coordinate_of, in_channels, place_of};
+import package::methods::splat::place::{coordinate_of, in_channels, place_of, sixteen};
 import package::scene::shade::opacity;
 import package::scene::surface::Surface;
 import package::scene::visible::visible;
@@ -26,12 +26,7 @@ fn fragment_main(surface: Surface) -> Statistics {
     }
     let pixel = vec2u(surface.position.xy);
     let place = place_of(surface.depth_linear, quantiles, bilinear, surface.position.xy);
-    let knots = mat4x4f(
-        textureLoad(knots_a, pixel, 0),
-        textureLoad(knots_b, pixel, 0),
-        textureLoad(knots_c, pixel, 0),
-        textureLoad(knots_d, pixel, 0),
-    );
+    let knots = sixteen(knots_a, knots_b, knots_c, knots_d, pixel);
     let at = coordinate_of(place, knots);
     let b = absorbance(opacity(surface));
     return Statistics(b * in_channels(at, 0.0), b * in_channels(at, 4.0), b * in_channels(at, 8.0), b * in_channels(at, 12.0));
